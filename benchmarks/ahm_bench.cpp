@@ -24,12 +24,12 @@ std::vector<const Experiment*> named(const std::vector<std::string>& names) {
     for (const Experiment& e : experiments())
       if (name == "all" || name == e.name) result.push_back(&e);
     if (result.size() == before)
-      throw ahm::InvalidArgument(fmt::format("run: no experiment '{}'; `ahm-bench list` names them", name));
+      throw ahm::InvalidArgument(fmt::format("run: no experiment '{}'; `ahm-bench list` lists them", name));
   }
   return result;
 }
 
-/// An experiment that fails does not stop the others.
+/// Runs experiments. One that fails does not stop the others.
 int run(const std::vector<std::string>& names, const std::string& folder, const Settings& settings) {
   RunRecord record(folder);
   int failed = 0;
@@ -50,23 +50,23 @@ int run(const std::vector<std::string>& names, const std::string& folder, const 
 }  // namespace
 
 int main(int argc, char** argv) try {
-  CLI::App app("The experiments of Soliman & Sharp 2025, \"The Affine Heat Method\", run again; scaling; kernels");
+  CLI::App app("The experiments of Soliman & Sharp 2025, \"The Affine Heat Method\", repeated; scaling; kernels");
   app.require_subcommand(1);
   std::vector<std::string> names;
   std::string folder;
   Settings settings;
-  auto* list_command = app.add_subcommand("list", "names the experiments");
-  auto* run_command = app.add_subcommand("run", "runs experiments: DIR/NAME.csv and DIR/run.json");
+  auto* list_command = app.add_subcommand("list", "lists the experiments");
+  auto* run_command = app.add_subcommand("run", "runs experiments and writes DIR/NAME.csv and DIR/run.json");
   run_command->add_option("names", names, "names, or all")->required();
   run_command->add_option("-o,--output", folder, "folder of the tables")->required();
-  run_command->add_flag("--toy", settings.toy, "sizes that take seconds");
-  run_command->add_option("--meshes", settings.meshes, "folder of triangle meshes to run on as well")
+  run_command->add_flag("--toy", settings.toy, "small sizes that take seconds");
+  run_command->add_option("--meshes", settings.meshes, "folder of additional triangle meshes")
       ->check(CLI::ExistingDirectory);
   run_command->add_option("--vertices", settings.vertices, "sizes for the scaling experiments");
-  run_command->add_option("--threads", settings.threads, "0: one per core");
-  auto* report_command = app.add_subcommand("report", "draws what was run: DIR/NAME.svg and DIR/index.html");
+  run_command->add_option("--threads", settings.threads, "number of threads; 0: one per core");
+  auto* report_command = app.add_subcommand("report", "draws the results in DIR: DIR/NAME.svg and DIR/index.html");
   report_command->add_option("-o,--output", folder, "folder of the tables")->required();
-  auto* kernels_command = app.add_subcommand("kernels", "times the kernels; takes the options of Google Benchmark");
+  auto* kernels_command = app.add_subcommand("kernels", "measures the kernels; takes the options of Google Benchmark");
   kernels_command->prefix_command();
   CLI11_PARSE(app, argc, argv);
   if (*list_command) list();

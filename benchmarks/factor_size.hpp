@@ -1,13 +1,13 @@
 /// \file
-/// How large the Cholesky factor of a pattern is, and what it takes to compute.
+/// The size of the Cholesky factor of a pattern, and the operations of the factorization.
 #pragma once
 
 #include "ahm/cholesky/cholesky.hpp"
 
 namespace ahm::bench {
 
-/// What CHOLMOD says of a factor: its entries without padding, and the operations of a real factorization (a complex one
-/// takes four times as many).
+/// CHOLMOD's estimates for a factor: its entries without padding, and the operations of a real factorization. A complex one
+/// takes four times as many.
 struct FactorSize {
   double entries, flops;
 };

@@ -16,7 +16,7 @@ double copy_bandwidth() {
   static Stream arrays;
   return 16.0 * Stream::length / median_cpu_seconds([&] {
            arrays.copy();
-           asm volatile("" : : "r"(arrays.c.data()) : "memory");  // or it would be left out
+           asm volatile("" : : "r"(arrays.c.data()) : "memory");  // keeps the compiler from removing the copy
          });
 }
 

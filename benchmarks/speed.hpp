@@ -1,6 +1,6 @@
 /// \file
-/// What the machine can do on one thread: the speed of memory and of the BLAS, in processor time, which a busy machine
-/// hardly touches. Measured anew by each call: a shared machine changes.
+/// Speed of memory and BLAS on one thread, in processor time, which a busy machine hardly changes. Every call measures
+/// again, since the speed of a shared machine varies.
 ///
 /// \code
 /// const double share = flops / ahm::bench::median_cpu_seconds(work) / ahm::bench::gemm_speed(false);
@@ -19,7 +19,7 @@ namespace ahm::bench {
 /// CPU time of the process, seconds.
 double cpu_seconds();
 
-/// The same of one call.
+/// CPU time of one call, seconds.
 template <class Work>
 double cpu_seconds_of(Work&& work) {
   const double start = cpu_seconds();
@@ -27,7 +27,7 @@ double cpu_seconds_of(Work&& work) {
   return cpu_seconds() - start;
 }
 
-/// The same: median of five.
+/// CPU time of a call, seconds: median of five.
 template <class Work>
 double median_cpu_seconds(Work&& work) {
   std::array<double, 5> times;
@@ -36,8 +36,8 @@ double median_cpu_seconds(Work&& work) {
   return times[2];
 }
 
-/// Bytes per second of a copy as in STREAM (each byte read and each byte written counts), far larger than the caches.
-/// Median of five.
+/// Speed of a copy as in STREAM, bytes per second: the bytes read plus the bytes written. The arrays are far larger than
+/// the caches. Median of five.
 double copy_bandwidth();
 
 /// Real floating point operations per second of the BLAS: dgemm or zgemm of matrices 512 x 512. Median of five.
@@ -66,7 +66,7 @@ template <class Number>
 using Gemm = void(const char*, const char*, const int*, const int*, const int*, const Number*, const Number*,
                   const int*, const Number*, const int*, const Number*, Number*, const int*);
 
-/// A product of two matrices by the BLAS that the process started with.
+/// A product of two matrices by the BLAS of this process.
 template <class Number>
 struct Product {
   static constexpr int side = 512;

@@ -1,5 +1,5 @@
 /// \file
-/// What a piece of work costs.
+/// Time and memory of a piece of work.
 ///
 /// \code
 /// const double seconds = least_seconds([&] { solver.solve(source); });
@@ -19,7 +19,7 @@
 
 namespace ahm::bench {
 
-/// Least wall-clock time of five runs, or of as many as fit into five seconds: what else the machine does only adds.
+/// Shortest wall-clock time of five runs, or of as many as fit into five seconds. Other work of the machine only adds time.
 template <class Work>
 double least_seconds(const Work& work) {
   double least = std::numeric_limits<double>::infinity(), sum = 0;
@@ -31,13 +31,14 @@ double least_seconds(const Work& work) {
   return least;
 }
 
-/// Largest memory that the work adds, in a process of its own; NaN where there can be none or the work throws.
+/// Largest memory that the work adds, MB, measured in a process of its own. NaN where there can be no process or the work
+/// throws.
 template <class Work>
 double added_megabytes(const Work& work) {
   double added = std::numeric_limits<double>::quiet_NaN();
   int ends[2];
   if (pipe(ends) != 0) return added;
-  malloc_trim(0);  // what is free here would be used before anything is added
+  malloc_trim(0);  // returns free memory to the system, which the work would otherwise use first
   const pid_t child = fork();
   if (child == 0) {
     const double before = peak_megabytes();

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""How the viewer fares with large clouds and meshes, in a headless Chromium that draws on the processor.
+"""Measures the viewer on large clouds and meshes, in a headless Chromium that draws on the processor.
 
     /usr/bin/python3 benchmarks/viewer_speed.py --ahm build/release/bin/ahm --points 1000000 [--mesh] [--shot view.png]
 
-Makes a bumpy sphere of so many points, opens it by `ahm view`, and prints seconds. Debian: chromium chromium-driver
+Writes a bumpy sphere of the requested size, opens it with `ahm view`, and prints seconds. Debian: chromium chromium-driver
 python3-selenium python3-numpy.
 """
 import argparse
@@ -20,13 +20,13 @@ from selenium.webdriver.chrome.service import Service
 
 
 def bumpy(directions):
-    """Points on a sphere of radius about 1, (n, 3) like the unit vectors that are given."""
+    """Points on a bumpy sphere of radius about 1: (n, 3), one in the direction of each unit vector of `directions`."""
     x, y, z = directions.T
     return directions * (1 + 0.1 * np.sin(5 * x + 2 * y) * np.cos(4 * z) + 0.05 * np.sin(9 * y))[:, None]
 
 
 def write_cloud(path, n):
-    """Points of a Fibonacci lattice, moved by a tenth of their spacing."""
+    """Writes the points of a Fibonacci lattice, moved by a tenth of their spacing."""
     k = np.arange(n) + 0.5
     z, phi = 1 - 2 * k / n, k * np.pi * (1 + 5 ** 0.5)
     r = np.sqrt(1 - z * z)
@@ -36,7 +36,7 @@ def write_cloud(path, n):
 
 
 def write_mesh(path, n):
-    """Triangles between m meridians and m / 2 parallels."""
+    """Writes triangles between m meridians and m / 2 parallels."""
     m = round((2 * n) ** 0.5)
     theta, phi = np.meshgrid(np.pi * (np.arange(m // 2) + 0.5) / (m // 2), 2 * np.pi * np.arange(m) / m, indexing="ij")
     points = np.stack([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)], axis=-1).reshape(-1, 3)
@@ -72,7 +72,8 @@ def browser(options, folder):
     return driver
 
 
-# Turns by whole pictures, each finished before the next: [milliseconds per picture while it turns, of one at rest].
+# Turns the view by whole pictures, each finished before the next. Returns milliseconds per picture while it turns and for
+# one at rest.
 TURN = """
   const done = arguments[arguments.length - 1], stage = ahm.stage, gl = stage.renderer.getContext(), times = [];
   const finish = () => gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
@@ -92,7 +93,7 @@ TURN = """
   };
   stage.turn(0.03, 0);"""
 
-# Of a request, until its answer is on the screen.
+# Sends a request and waits until its answer is on the screen.
 ASK = """
   const done = arguments[arguments.length - 1], begin = performance.now();
   (async () => {
@@ -113,7 +114,7 @@ REQUESTS = {
 
 
 def cpu_seconds(process):
-    """Of a process that lives, from its first moment."""
+    """Processor time of a running process since its start, seconds."""
     fields = pathlib.Path(f"/proc/{process.pid}/stat").read_text().rsplit(")", 1)[1].split()
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
@@ -168,7 +169,7 @@ if __name__ == "__main__":
     parser.add_argument("--ahm", required=True)
     parser.add_argument("--points", type=int, default=1_000_000)
     parser.add_argument("--mesh", action="store_true", help="triangles instead of a cloud")
-    parser.add_argument("--shot", help="a picture of the page, .png")
+    parser.add_argument("--shot", help="file for a picture of the page, .png")
     parser.add_argument("--chromium", default="/usr/bin/chromium")
     parser.add_argument("--driver", default="/usr/bin/chromedriver")
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as work:

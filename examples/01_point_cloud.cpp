@@ -1,4 +1,4 @@
-// From scattered points to their directions and distances from one of them.
+// Directions and distances of scattered points from one of them.
 #include <ahm/ahm.hpp>
 #include <cmath>
 #include <cstdio>

@@ -1,4 +1,4 @@
-// Any discretization can be solved on: here points on a helix, a graph of dimension 1 that no backend knows.
+// The solver accepts any discretization: here points on a helix, a graph of dimension 1 without a backend.
 #include <ahm/graph/csr_graph.hpp>
 #include <ahm/graph/validate.hpp>
 #include <ahm/maps/log_map_solver.hpp>
@@ -7,7 +7,7 @@
 
 int main() {
   const int n = 200;
-  const double step = 0.1;  // arclength between neighbours
+  const double step = 0.1;  // arclength between neighbors
 
   ahm::CsrGraphData helix;
   helix.dimension = 1;
@@ -18,15 +18,15 @@ int main() {
       if (j < 0 || j >= n) continue;
       helix.neighbors.push_back(j);
       helix.weights.push_back(1.0 / step);
-      helix.logs.push_back((j - i) * step);  // where j lies on the tangent line of i
-      helix.transports.push_back(1.0);       // all tangents point the same way along the curve
+      helix.logs.push_back((j - i) * step);  // position of j on the tangent line of i
+      helix.transports.push_back(1.0);       // all tangents point in the same direction along the curve
     }
     helix.row_begin.push_back(static_cast<ahm::Offset>(helix.neighbors.size()));
     helix.masses.push_back(step);
   }
 
   const ahm::CsrGraph graph(std::move(helix));
-  ahm::validate(graph);  // names the first law that is broken, if any
+  ahm::validate(graph);  // throws on the first violated law, with its name
   const ahm::LogMap map = ahm::LogMapSolver(graph).solve(ahm::Source::at_vertex(ahm::Vertex{50}));
   std::printf("the ends lie at %.3f and %.3f\n", map.coordinates(ahm::Vertex{0})[0],
               map.coordinates(ahm::Vertex(n - 1))[0]);

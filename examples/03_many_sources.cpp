@@ -1,4 +1,4 @@
-// Many sources with one solver, within a radius, with progress and a way to stop; then distances and a path.
+// Many maps within a radius from one solver, with progress and cancellation; then distances and a path.
 #include <ahm/ahm.hpp>
 #include <cmath>
 #include <cstdio>
@@ -28,7 +28,7 @@ int main() {
     for (const ahm::Status status : map.status) mapped += status == ahm::Status::ok;
   std::printf("%zu maps of %zu points each\n", maps.size(), mapped / maps.size());
 
-  const std::vector<double> distance = solver.distance({0, n - 1});  // from the nearer of the poles
+  const std::vector<double> distance = solver.distance({0, n - 1});  // from the nearer of the two poles
   const ahm::SurfacePath path = solver.path(0, n - 1);
   std::printf("the equator is %.3f away, the other pole %.3f\n", distance[n / 2], path.length);
   return std::abs(distance[n / 2] - std::acos(0.0)) < 0.05 ? 0 : 1;

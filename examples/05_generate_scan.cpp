@@ -11,7 +11,7 @@ int main() {
     double p[3] = {normal(random), normal(random), normal(random)};
     const double r = std::hypot(p[0], p[1], p[2]);
     for (double& x : p) x /= r;
-    // The scanner stands above: fewer points below, none in two round shadows.
+    // The scanner is above: fewer points below, none in two round shadows.
     if (uniform(random) > 0.15 + 0.85 * (p[2] + 1) / 2) continue;
     if (p[0] > 0.93 || p[1] < -0.96) continue;
     const double bump = 1 + 0.08 * std::sin(5 * p[0]) * std::cos(4 * p[1]) + 0.002 * normal(random);

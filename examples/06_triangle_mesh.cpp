@@ -1,10 +1,10 @@
-// A source inside a face, sampled at another point of the surface: both given on the input mesh.
+// A map from a source inside a face, evaluated at another point of the surface. Both are points of the input mesh.
 #include <ahm/ahm.hpp>
 #include <cmath>
 #include <cstdio>
 
 int main() {
-  // A long thin strip of needles: two rows of vertices, folded in the middle.
+  // A long thin strip of needle triangles: two rows of vertices, folded in the middle.
   std::vector<ahm::Vec3> positions;
   std::vector<ahm::Triangle> faces;
   const int n = 40;

@@ -1,4 +1,4 @@
-// A floor of hexagonal tiles, and the map seen from the middle of one of them.
+// A floor of hexagonal tiles, and the map from the center of one of them.
 #include <ahm/ahm.hpp>
 #include <array>
 #include <cmath>

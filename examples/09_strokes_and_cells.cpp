@@ -1,4 +1,4 @@
-// A plate parameterized along a stroke, and cut into cells around points spread evenly.
+// A plate parameterized along a stroke, and its Voronoi cells around farthest points.
 #include <ahm/applications/cells.hpp>
 #include <ahm/applications/stroke.hpp>
 #include <ahm/grid/grid_graph.hpp>

@@ -1,4 +1,4 @@
-// A path that covers a curved panel: a raster in log coordinates, carried back to points, normals and headings.
+// A path that covers a curved panel: a raster in log coordinates, mapped to points, normals and headings.
 #include <ahm/applications/coverage.hpp>
 #include <ahm/maps/log_map_solver.hpp>
 #include <ahm/pointcloud/point_cloud_surface.hpp>

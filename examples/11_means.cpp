@@ -1,4 +1,4 @@
-// Where to meet: mean and median of points on a dome, and the u axis along its meridians.
+// A meeting point: mean and median of points on a dome, with the u axis along its meridians.
 #include <ahm/applications/mean.hpp>
 #include <ahm/fields/distance.hpp>
 #include <ahm/pointcloud/point_cloud_surface.hpp>
@@ -27,14 +27,14 @@ int main() {
   std::printf("median: the heaviest town, %d (%d)\n", static_cast<int>(median.vertex.index),
               static_cast<int>(towns[0].index));
 
-  // How far is each point from the mean, and which way leads away from it?
+  // The distance of each point from the mean, and the direction away from it.
   const ahm::DistanceField field = ahm::distance_and_gradient(solver, ahm::source_at(mean));
   std::printf("a town is %.3f away\n", field.distance.values[towns[1].index]);
 
-  // The surface seen from a town, u running uphill.
+  // The map from a town, with u uphill.
   const ahm::LogMap map = solver.solve(
       ahm::Source::at_vertex(towns[0], ahm::direction_in_frame(cloud.graph(), ahm::Vertex(towns[0]), {0, 0, 1})));
   const auto phi = map.coordinates(mean.vertex);
-  std::printf("seen from the first town the mean lies %.3f uphill and %.3f aside\n", phi[0], phi[1]);
+  std::printf("from the first town the mean lies %.3f uphill and %.3f aside\n", phi[0], phi[1]);
   return top[2] > 0.99 && median.vertex == towns[0] ? 0 : 1;
 }

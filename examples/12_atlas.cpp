@@ -1,4 +1,4 @@
-// A texture atlas: cells around spread points, each flattened by its own log map; and how much that distorts.
+// A texture atlas: cells around farthest points, each flattened by its own log map, and their distortion.
 #include <ahm/applications/atlas.hpp>
 #include <ahm/applications/cells.hpp>
 #include <ahm/maps/log_map_solver.hpp>

@@ -10,8 +10,8 @@ constexpr double pi = std::numbers::pi;
 
 void print(double x, double y, double z) { std::printf("v %.9f %.9f %.9f\n", x, y, z); }
 
-/// Quads between rings of vertices, of which the first has the number `first` (from 1) and the last joins the first one
-/// where the rings are `closed`.
+/// Quads between consecutive rings of vertices. `first` is the number of the first vertex, from 1. If `closed`, the last
+/// ring joins the first.
 void print_quads(int first, int rings, int around, bool closed) {
   for (int i = 0; i + !closed < rings; ++i)
     for (int j = 0; j < around; ++j) {
@@ -50,7 +50,7 @@ void print_knot() {
   print_quads(1, along, around, true);
 }
 
-/// A bowl of radius 1 with a thick wall. Vertex 0 is the middle of its inside, the last one that of its outside.
+/// A bowl of radius 1 with a thick wall. The first vertex is the middle of its inside, the last one that of its outside.
 void print_bowl() {
   constexpr int around = 120, down = 40, rim = 6;
   const auto ring = [](double r, double z) {
@@ -67,7 +67,7 @@ void print_bowl() {
   print_fan(last, last - around, around, true);
 }
 
-/// A flat disc of radius 1 about vertex 0.
+/// A flat disc of radius 1 around its first vertex.
 void print_disc() {
   constexpr int around = 96, rings = 16;
   print(0, 0, 0);
@@ -85,6 +85,6 @@ int main(int argc, char** argv) {
   if (shape == "knot") return print_knot(), 0;
   if (shape == "bowl") return print_bowl(), 0;
   if (shape == "disc") return print_disc(), 0;
-  std::fprintf(stderr, "13_generate_mesh [knot|bowl|disc]\n");
+  std::fprintf(stderr, "usage: 13_generate_mesh [knot|bowl|disc]\n");
   return 2;
 }

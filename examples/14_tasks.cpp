@@ -1,4 +1,4 @@
-// The five commonest tasks: one map, many maps, distances, a path, a graph of your own.
+// The five most common tasks: one map, many maps, distances, a path, a graph of your own.
 #include <ahm/ahm.hpp>
 #include <cmath>
 #include <cstdio>

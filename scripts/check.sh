@@ -48,10 +48,10 @@ tidy() {
   } | sort -u | run_tidy tidy
 }
 
-# Sources as they are compiled, six at a time (ahm_compile_together): in half of the time.
+# Sources as they are compiled, six at a time (AHM_UNITY_BUILD): in half of the time.
 tidy-all() {
   echo "clang-tidy ..."
-  configure_tidy tidy-all
+  configure_tidy tidy-all -DAHM_UNITY_BUILD=ON
   sed -n 's/^ *"file": "\(.*\)".*/\1/p' build/tidy-all/compile_commands.json | sort -u |
     grep -Ev '/(conformance|cmake_pch|resources|stb|no_[a-z]*|pack)[./]' |
     run_tidy tidy-all --checks=-performance-unnecessary-value-param,-bugprone-suspicious-include

@@ -1,5 +1,5 @@
 /// \file
-/// The program ahm-mpi: maps over tiles by the ranks of an MPI run, each of which owns some.
+/// The program ahm-mpi: maps over tiles, computed by the ranks of an MPI run. Each rank owns some of the tiles.
 
 #include <CLI/CLI.hpp>
 #include <iostream>
@@ -34,7 +34,7 @@ int rank_of() {
   return rank;
 }
 
-/// The first rank alone, then the others: what is wrong with the input is said once.
+/// Runs a task on the first rank, then on the others, so that errors of the input are reported once.
 template <class Task>
 auto first_alone(const Task& task) {
   if (rank_of() > 0) MPI_Barrier(MPI_COMM_WORLD);
@@ -43,7 +43,7 @@ auto first_alone(const Task& task) {
   return result;
 }
 
-/// Found by the first rank, which reads the tiles for it, and told to the others.
+/// The vertices of the sources. Only the first rank reads the tiles; it sends the result to the others.
 std::vector<Vertex> find_sources(const TiledGraph& graph, const std::vector<std::string>& texts) {
   std::vector<Index> numbers(texts.size());
   if (rank_of() == 0) {
@@ -56,6 +56,7 @@ std::vector<Vertex> find_sources(const TiledGraph& graph, const std::vector<std:
   return result;
 }
 
+/// The values of all ranks, on the first rank.
 std::vector<std::int64_t> of_all_ranks(std::int64_t value) {
   int size = 1;
   MPI_Comm_size(MPI_COMM_WORLD, &size);
@@ -64,7 +65,7 @@ std::vector<std::int64_t> of_all_ranks(std::int64_t value) {
   return values;
 }
 
-/// A line per number, a column per rank.
+/// Prints one line per figure, with one column per rank.
 void print_traffic(const MpiTeam& team) {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
@@ -109,12 +110,12 @@ void make_map(const Arguments& a, bool coordinates) {
   const TiledMapSummary s = team_log_map(graph, source, a.logmap.output, options, team, owners);
   if (team.rank() == 0) {
     print_map(s, graph.size(), coordinates);
-    std::cout << "; " << s.march.solved << " vertices solved by " << team.size() << " ranks\n";
+    std::cout << "; vertices solved: " << s.march.solved << ", ranks: " << team.size() << "\n";
   }
   if (a.traffic) print_traffic(team);
 }
 
-/// Tile by tile, whoever is free: no rank waits for another.
+/// Makes local maps tile by tile. Each rank takes the next tile when it is free, so no rank waits for another.
 void make_local_maps(Arguments& a) {
   const TiledGraph graph = first_alone([&] {
     TiledGraph tiles(a.local.folder, a.local.memory);
@@ -140,7 +141,7 @@ void make_local_maps(Arguments& a) {
   MPI_Win_free(&window);
   const std::vector<std::int64_t> by_rank = of_all_ranks(made);
   if (rank_of() > 0) return;
-  std::cout << "tiles made by each rank:";
+  std::cout << "tiles written by each rank:";
   for (std::int64_t tiles : by_rank) std::cout << ' ' << tiles;
   std::cout << '\n';
 }
@@ -151,20 +152,22 @@ void add_commands(CLI::App& app, Arguments& a) {
     add_march_options(map, a.logmap);
     if (coordinates) add_map_options(map, a.logmap);
     add_deal_option(map, a.deal);
-    map.add_flag("--traffic", a.traffic, "tell messages, bytes, memory and time of each rank");
+    map.add_flag("--traffic", a.traffic, "print messages, bytes, memory and time of each rank");
     map.callback([&, coordinates] { make_map(a, coordinates); });
   };
-  add_map("logmap", "the log map, with distances, that all ranks march together; killed, it goes on", true);
-  add_map("distance", "distances alone, those of logmap --variant localized, for less", false);
-  CLI::App& local = *app.add_subcommand("local-maps", "the map around every vertex; each rank takes tile after tile");
+  add_map("logmap", "make the log map with all ranks; resumes a killed run", true);
+  add_map("distance", "make only the distances of logmap --variant localized, which is faster", false);
+  CLI::App& local =
+      *app.add_subcommand("local-maps", "make the map around every vertex; each rank works on one tile at a time");
   add_local_options(local, a.local);
   local.callback([&] { make_local_maps(a); });
 }
 
-/// @return what the program returns
+/// Parses the command line and runs the command. @return the exit status
 int run(const std::vector<std::string>& words) {
   Arguments a;
-  CLI::App app("Maps over tiles (ahm-tiles) by the ranks of an MPI run. What follows -- are options of PETSc.", name);
+  CLI::App app(
+      "Maps over tiles (ahm-tiles), computed by the ranks of an MPI run. Options after -- are passed to PETSc.", name);
   app.set_version_flag("--version", name + " " AHM_VERSION, "Print the version");
   app.require_subcommand(1);
   add_commands(app, a);
@@ -178,15 +181,15 @@ int run(const std::vector<std::string>& words) {
   return 0;
 }
 
-/// A rank that fails ends all.
+/// Prints an error and ends all ranks.
 [[noreturn]] void fail(const char* what) {
   const std::string text = name + ": error: rank " + std::to_string(rank_of()) + ": " + what + "\n";
-  std::cerr << text << std::flush;  // at once, since others may fail too
+  std::cerr << text << std::flush;  // in one piece, because other ranks may fail at the same time
   MPI_Abort(MPI_COMM_WORLD, 1);
   std::abort();
 }
 
-/// Where the user says nothing else.
+/// Sets an option of PETSc unless the user has set it.
 void set_default(const char* option, const char* value) {
   PetscBool is_set = PETSC_FALSE;
   check(PetscOptionsHasName(nullptr, nullptr, option, &is_set));
@@ -209,10 +212,10 @@ int run_with_petsc(int argc, char** argv) {
     app::install_interrupt_handling(name);
     check(PetscPushErrorHandler(PetscReturnErrorHandler, nullptr));
     set_default("-pc_type", "bjacobi");
-    set_default("-sub_pc_type", "ilu");  // of a symmetric matrix as good as icc, which crashes where a rank has no rows
+    set_default("-sub_pc_type", "ilu");  // equivalent to icc for a symmetric matrix; icc crashes if a rank has no rows
     status = run(words);
   } catch (const std::bad_alloc&) {
-    fail("out of memory; take more ranks on more machines, or plan smaller tiles");
+    fail("out of memory; use more ranks on more machines, or plan smaller tiles");
   } catch (const std::exception& e) {
     fail(e.what());
   }

@@ -9,10 +9,10 @@
 namespace ahm::tiles::mpi {
 namespace {
 
-/// Thinner bands would be solved for their margin alone.
+/// Smallest reach, heat distance. Thinner bands would consist mostly of their margin.
 constexpr double least_reach = 4;
 
-/// Less than residuals allow, for what conditioning and many bands add.
+/// Safety margin of the reach, heat distance, for rounding errors of badly conditioned systems and of many bands.
 constexpr double lost_to_rounding = 2;
 
 }  // namespace
@@ -38,7 +38,7 @@ std::int64_t MpiTeam::sum(std::int64_t value) {
   return value;
 }
 
-/// @param to  of each rank what it is told
+/// Sends values to the other ranks. @param to  values for each rank. @return the values that other ranks sent
 template <class T>
 std::vector<T> MpiTeam::exchange(const std::vector<std::vector<T>>& to) {
   const auto ranks = static_cast<std::size_t>(size_);

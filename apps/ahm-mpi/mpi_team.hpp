@@ -1,5 +1,5 @@
 /// \file
-/// The ranks of an MPI run as those who march together, each over tiles of its own.
+/// The ranks of an MPI run as a march team, each with its own tiles.
 #pragma once
 
 #include <vector>
@@ -11,9 +11,11 @@
 
 namespace ahm::tiles::mpi {
 
+/// The team of all ranks of a communicator.
 class MpiTeam final : public MarchTeam {
  public:
-  /// @param accuracy  as `HeatOptions`
+  /// @param owner_of_tile  rank that owns each tile
+  /// @param accuracy       `HeatOptions::accuracy`
   MpiTeam(MPI_Comm ranks, const TiledGraph& graph, std::vector<int> owner_of_tile, double accuracy);
 
   int rank() const { return rank_; }
@@ -29,7 +31,7 @@ class MpiTeam final : public MarchTeam {
   std::unique_ptr<const HeatSystem> system(BandPart part, const HeatOptions& options) override;
 
   const Traffic& traffic() const { return traffic_; }
-  /// Most vertices of a band that were this rank's, and those of all bands.
+  /// Largest number of vertices of this rank in a band, and their sum over all bands.
   std::int64_t largest_part() const { return largest_part_; }
   std::int64_t solved() const { return solved_; }
 

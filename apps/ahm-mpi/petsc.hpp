@@ -1,5 +1,5 @@
 /// \file
-/// PETSc's objects as values that clean up after themselves, and its error codes as exceptions.
+/// Owning handles for PETSc objects, and exceptions for its error codes.
 #pragma once
 
 #define OMPI_SKIP_MPICXX 1
@@ -13,22 +13,23 @@
 #include "ahm/error.hpp"
 
 static_assert(std::is_same_v<PetscScalar, double>,
-              "this PETSc has complex or single numbers; choose a real one by PKG_CONFIG_PATH, or AHM_WITH_MPI=OFF");
+              "this PETSc uses complex or single-precision numbers; select another one with PKG_CONFIG_PATH, or "
+              "AHM_WITH_MPI=OFF");
 
 namespace ahm::tiles::mpi {
 
-/// @throws Error with PETSc's words
+/// Checks a result of PETSc. @throws ResourceExhausted, Error with the message of PETSc
 inline void check(PetscErrorCode code) {
   if (code == 0) return;
   const char* text = nullptr;
   char* detail = nullptr;
   PetscErrorMessage(code, &text, &detail);
-  if (code == PETSC_ERR_MEM) throw ResourceExhausted("PETSc: out of memory; take more machines");
+  if (code == PETSC_ERR_MEM) throw ResourceExhausted("PETSc: out of memory; use more machines");
   throw Error(std::string("PETSc: ") + (text != nullptr ? text : "error " + std::to_string(code)) +
               (detail != nullptr && *detail != '\0' ? std::string("; ") + detail : ""));
 }
 
-/// A Mat, Vec or KSP.
+/// Owns a Mat, Vec or KSP.
 template <class T, PetscErrorCode (*destroy)(T*)>
 class Handle {
  public:

@@ -10,17 +10,17 @@
 namespace ahm::tiles::mpi {
 namespace {
 
-/// Residuals are driven this far below the accuracy asked for, as long as doubles can tell them from rounding.
+/// Target residual as a share of the requested accuracy, and its lower limit, below which rounding dominates.
 constexpr double residual_share = 1e-6;
 constexpr double least_residual = 1e-16;
 
-/// Rows of square blocks, columns counted over all ranks and ascending.
+/// Rows of a matrix of square blocks. Columns are numbered over all ranks and ascend.
 struct BlockRows {
   PetscInt width = 1;
   std::vector<PetscInt> begin{0}, columns;
   std::vector<PetscScalar> values;
 
-  /// Adds to the entry of a column of the row at hand; of the same one as before, or a later one.
+  /// Adds a multiple of a block to an entry of the current row. Columns must not descend from call to call.
   void add(PetscInt column, double factor, std::span<const double> block) {
     if (static_cast<PetscInt>(columns.size()) == begin.back() || columns.back() != column) {
       columns.push_back(column);
@@ -32,7 +32,7 @@ struct BlockRows {
   void end_row() { begin.push_back(static_cast<PetscInt>(columns.size())); }
 };
 
-/// One operator: its matrix, and what solves with it.
+/// One operator: its matrix and its Krylov solver.
 class Operator {
  public:
   Operator(MPI_Comm ranks, const BlockRows& rows, std::span<const PetscInt> halo, const char* name, double accuracy,
@@ -48,7 +48,7 @@ class Operator {
     check(MatSetSizes(matrix_.get(), own, own, PETSC_DETERMINE, PETSC_DETERMINE));
     check(MatSetType(matrix_.get(), width_ == 1 ? MATAIJ : MATBAIJ));
     check(MatSetBlockSize(matrix_.get(), width_));
-    // The calls of the type at hand, sequential or parallel, do something; the other's nothing.
+    // Of each pair of calls, only the one for the type of the matrix (sequential or parallel) has an effect.
     if (width_ == 1) {
       check(MatSeqAIJSetPreallocationCSR(matrix_.get(), rows.begin.data(), rows.columns.data(), rows.values.data()));
       check(MatMPIAIJSetPreallocationCSR(matrix_.get(), rows.begin.data(), rows.columns.data(), rows.values.data()));
@@ -68,7 +68,7 @@ class Operator {
     check(KSPSetFromOptions(solver_.get()));
   }
 
-  /// x <- solution; own numbers, then those of the halo.
+  /// Solves in place. On return, x has the solution at own vertices, then at the halo.
   void solve(std::span<double> x) const {
     const double unit = unit_of(x.first(static_cast<std::size_t>(width_) * static_cast<std::size_t>(own_)));
     if (unit == 0) return std::fill(x.begin(), x.end(), 0.0);
@@ -90,7 +90,7 @@ class Operator {
   }
 
  private:
-  /// The power of two of the largest number of all ranks, so that no square overflows.
+  /// The largest power of two below the largest absolute value of all ranks. Dividing by it avoids overflow of squares.
   double unit_of(std::span<const double> x) const {
     double own = 0, largest = 0;
     for (double value : x) own = std::max(own, std::abs(value));
@@ -104,9 +104,9 @@ class Operator {
     check(KSPGetConvergedReason(solver_.get(), &reason));
     check(KSPGetIterationNumber(solver_.get(), &iterations));
     if (reason < 0)
-      throw NotPositiveDefinite(std::string("operator ") + name_ + ": PETSc's solver ends after " +
+      throw NotPositiveDefinite(std::string("operator ") + name_ + ": PETSc's solver stopped after " +
                                 std::to_string(iterations) + " iterations with " + KSPConvergedReasons[reason] +
-                                "; give a smaller t_coef, or other options of PETSc");
+                                "; use a smaller t_coef, or other options of PETSc");
     ++traffic_.solves;
     traffic_.iterations += iterations;
     traffic_.reductions += 3 * std::int64_t{iterations};
@@ -154,7 +154,7 @@ class PetscSystem final : public HeatSystem {
   PetscInt row_of(Index place, Index own) const {
     return place < own ? first_row_ + place : halo_rows_[static_cast<std::size_t>(place - own)];
   }
-  /// Row i of A is c (m_i + tau sum w_ij) and -c tau w_ij; B has blocks of these, times R_ji.
+  /// Row i of A has the entries c (m_i + tau sum w_ij) and -c tau w_ij, with c = `scaling_`. The blocks of B are these times I and R_ji.
   void add_rows(const CsrGraph& graph, Index own, Index i, BlockRows& A, BlockRows& B) {
     constexpr std::size_t diagonal_entry = std::numeric_limits<std::size_t>::max();
     const Star star = graph.star(i);
@@ -180,7 +180,7 @@ class PetscSystem final : public HeatSystem {
 
   std::size_t d_, n_;
   std::vector<double> identity_, block_;
-  std::vector<std::pair<PetscInt, std::size_t>> order_;  ///< of a row's edges
+  std::vector<std::pair<PetscInt, std::size_t>> order_;  ///< column and edge of each entry of a row
   PetscInt first_row_ = 0;
   std::vector<PetscInt> halo_rows_;
   std::unique_ptr<Operator> A_, B_;

@@ -1,5 +1,5 @@
 /// \file
-/// A and B of a band, its rows shared out over ranks, solved by PETSc.
+/// The operators A and B of a band, with rows distributed over ranks, solved by PETSc.
 #pragma once
 
 #include <memory>
@@ -10,10 +10,11 @@
 
 namespace ahm::tiles::mpi {
 
-/// The residual, relative, that is enough for an accuracy.
+/// The relative residual that suffices for an accuracy.
 double residual_for(double accuracy);
 
-/// By PETSc's conjugate gradients and whatever its options say (`-ksp_type`, `-pc_type`, `-sub_pc_type`, ...).
+/// Assembles the operators of a band. PETSc solves them with conjugate gradients, or as its options set (`-ksp_type`, `-pc_type`,
+/// `-sub_pc_type`, ...).
 /// @throws NotPositiveDefinite (no convergence, heat is lost), Error (PETSc)
 std::unique_ptr<const HeatSystem> petsc_system(MPI_Comm ranks, BandPart part, const HeatOptions& options,
                                                Traffic& traffic);

@@ -13,7 +13,7 @@
 namespace ahm::tiles::program {
 namespace {
 
-/// What both kinds of meshes take.
+/// The options that triangle meshes and polygon meshes share.
 template <class Options>
 Options options_of(const MeshPlan& mesh, const Progress& progress) {
   Options options;
@@ -47,14 +47,14 @@ Manifest plan_mesh(const std::filesystem::path& input, const std::filesystem::pa
   {
     const io::Geometry geometry = io::read(input);
     if (geometry.face_count() == 0 && !mesh.is_usual())
-      throw InvalidArgument("--non-manifold, --discretization and --no-flips are for meshes, and '" + input.string() +
+      throw InvalidArgument("--non-manifold, --discretization and --no-flips require a mesh; '" + input.string() +
                             "' has no faces");
     if (geometry.face_count() == 0)
       throw InvalidArgument(
           "'" + input.string() +
-          "' has no faces, and clouds are not cut into tiles from files of its kind; save it as .ply");
+          "' has no faces; point clouds in this format cannot be cut into tiles, convert the file to .ply");
     if (options.k != 0 || options.drop_non_finite || options.ignore_normals)
-      throw InvalidArgument("--k, --drop-nan and --ignore-normals are for clouds, and '" + input.string() +
+      throw InvalidArgument("--k, --drop-nan and --ignore-normals require a point cloud; '" + input.string() +
                             "' is a mesh");
     surface = surface_of(geometry, mesh, progress);
   }

@@ -1,5 +1,5 @@
 /// \file
-/// Tiles of a mesh that fits into memory.
+/// Cuts a mesh that fits into memory into tiles.
 #pragma once
 
 #include <filesystem>
@@ -12,7 +12,7 @@
 
 namespace ahm::tiles::program {
 
-/// How its surface is built, as by the options of `ahm logmap`.
+/// Options for building the surface of a mesh, as in `ahm logmap`.
 struct MeshPlan {
   NonManifold non_manifold = NonManifold::error;
   polymesh::Discretization discretization = polymesh::Discretization::automatic;
@@ -24,7 +24,7 @@ struct MeshPlan {
   }
 };
 
-/// Reads a mesh, builds its surface, and writes its tiles, built.
+/// Reads a mesh, builds its surface, and writes it as built tiles.
 /// @throws InvalidArgument (a file without faces; options of clouds), what reading, building and `tile_surface` throw
 Manifest plan_mesh(const std::filesystem::path& input, const std::filesystem::path& folder, const TileOptions& options,
                    const MeshPlan& mesh, const Progress& progress);

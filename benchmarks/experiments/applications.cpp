@@ -1,4 +1,4 @@
-// What applications gain by the method of their maps: decals, atlases, tool paths, means.
+// Errors of applications (decals, atlases, tool paths, means) for each method of their maps.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ namespace {
 
 constexpr int source_count = 3;
 constexpr Index chart_count = 12, largest_mesh = 100'000;
-/// Of a decal, of the part that a tool covers, and of the points of a mean, as a share of the largest distance.
+/// Radius of decals, of tool paths, and of the points of a mean, as a share of the largest distance.
 constexpr double decal_share = 0.15;
 constexpr int lines_per_radius = 10;
 
@@ -67,7 +67,7 @@ class Applications {
     return maps.map(source, std::numeric_limits<double>::infinity(), true);
   }
 
-  /// Of five points around the source.
+  /// The mean of five points around the source.
   Center mean(const AnySolver& maps, Vertex source) const {
     const std::size_t s = std::ranges::find(sources_, source) - sources_.begin();
     std::vector<Vertex> points;
@@ -75,7 +75,7 @@ class Applications {
     return karcher_mean(maps, points, {}, {.start = source});
   }
 
-  /// Of the faces around a source.
+  /// Distortion of the faces around a source.
   DistortionSummary decal(const LogMap& map, std::size_t s) const {
     std::vector<char> is_near(static_cast<std::size_t>(surface_.size()), 0);
     for (const Vertex v : near_[s]) is_near[v.index] = 1;
@@ -122,7 +122,7 @@ class Applications {
   std::vector<Index> corners_;
   std::vector<Vertex> sources_;
   std::vector<double> radius_;
-  std::vector<std::vector<Vertex>> near_;  ///< of each source, ascending numbers
+  std::vector<std::vector<Vertex>> near_;  ///< vertices near each source, in ascending order
   std::vector<Center> exact_means_;
 };
 

@@ -1,5 +1,5 @@
-// The same surface as triangles, as quads and as points: what each costs and how near it comes; and what orderings,
-// threads, the march and neighbour searches change.
+// Cost and error of the same surface as triangles, as quads and as points; and the effect of orderings, threads, the march
+// and neighbor searches.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -45,7 +45,7 @@ Shape cut_at_random(std::string name, Quads quads) {
   return shape;
 }
 
-/// The unit sphere, jittered along itself, its radius changed by `bumps` in waves.
+/// The unit sphere with points jittered along it. `bumps` is the amplitude of waves of its radius.
 Shape sphere(std::string name, Index n, double bumps) {
   const auto side = static_cast<Index>(std::lround(std::sqrt(n / 6.0)));
   const test::Polygons mesh = test::cube_sphere(side);
@@ -67,7 +67,7 @@ Shape make_shape(const std::string& name, Index n) {
   return sphere(name, n, name == "sphere" ? 0.0 : 0.1);
 }
 
-/// What a run may choose.
+/// The settings of a run.
 struct Setup {
   const char* name = "";
   unsigned threads = 0;
@@ -85,7 +85,7 @@ struct PointLogs {
   std::vector<double> u, v;
 };
 
-/// The three backends behind what they have in common.
+/// The three backends with a common interface.
 struct Triangles {
   static constexpr const char* name = "triangles";
   trimesh::TriangleMeshSurface surface;
@@ -118,10 +118,10 @@ struct Points {
 
 // Errors.
 
-/// Beyond, exact polyhedral distances take minutes and gigabytes.
+/// Above this number of vertices, exact polyhedral distances take minutes and gigabytes.
 constexpr std::size_t exact_up_to = 12000;
 
-/// Distances from each source; empty where nothing is known.
+/// Exact distances from each source; empty where they are unknown.
 using Exact = std::vector<std::vector<double>>;
 
 std::vector<Index> sources_of(const Shape& shape) {
@@ -150,7 +150,7 @@ struct Accuracy {
   double vector = NAN;  ///< rms of the vector error within 0.9 of the largest distance, over that distance
 };
 
-/// Where the sphere's own log map puts q, with the u axis of the sources.
+/// The sphere's log map of q from p, with the u axis of the sources.
 Vec2 sphere_log(const Vec3& p, const Vec3& q) {
   const Vec3 x = unit(test::tangential(u_direction, p));
   return test::sphere_log(p, x, test::cross(p, x), q);
@@ -187,7 +187,7 @@ const std::vector<std::string> columns{"part",       "shape",        "as",      
                                        "build s",    "factor s",     "first map s", "further map s", "batch s each",
                                        "factors MB", "peak MB"};
 
-/// One row: everything about one shape, one backend and one setup.
+/// Adds one row: one shape, one backend and one setup.
 template <class Backend>
 void measure(const char* part, const Shape& shape, const Exact& exact, const Setup& setup, Table& table) {
   const MapOptions options{.threads = setup.threads};
@@ -207,7 +207,7 @@ void measure(const char* part, const Shape& shape, const Exact& exact, const Set
     logs.push_back({map.u, map.v});
   }
   const double further = least_seconds([&] { solver->solve(sources[0], options); });
-  const bool global = setup.strategy == Strategy::global;  // a march has no factors and gains nothing in a batch
+  const bool global = setup.strategy == Strategy::global;  // the march has no factors, and a batch saves nothing
   while (sources.size() < 32) sources.push_back(sources[sources.size() - 2]);
   const Cell batch = global ? Cell(least_seconds([&] { solver->solve(sources, options); }) / 32) : Cell();
   const Accuracy error = accuracy(shape, exact, logs);
@@ -237,7 +237,7 @@ void compare_setups(Index n, Table& table, unsigned threads) {
 #endif
   for (const auto& [name, search] : searches) try {
       measure<Points>("search", shape, unknown, {name, threads, Ordering::amd, Strategy::global, search}, table);
-    } catch (const InvalidArgument&) {  // a build without it
+    } catch (const InvalidArgument&) {  // this build does not contain the search
     }
 }
 
@@ -262,7 +262,7 @@ Table backends(const Settings& settings) {
   for (const char* as : {"triangles", "quads", "points"}) {
     const Table rows = table.where("shape", "sphere").where("vertices", largest).where("as", as);
     table.seen +=
-        fmt::format("{}{}: median error of distance {:.2g}, first map after {:.2g} s, each further one {:.2g} s",
+        fmt::format("{}{}: median error of distance {:.2g}, first map after {:.2g} s, each additional one {:.2g} s",
                     table.seen.empty() ? "Sphere, " + largest + " vertices: " : "; ", as, rows.mean("median error"),
                     rows.mean("build s") + rows.mean("first map s"), rows.mean("further map s"));
   }

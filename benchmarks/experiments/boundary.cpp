@@ -1,5 +1,4 @@
-// Fig. 4: a spherical cap of 60 degrees. It is convex, so that its geodesics are those of the sphere, whatever lies
-// beyond the boundary.
+// Fig. 4: a spherical cap of 60 degrees. It is convex, so its geodesics are those of the sphere.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -47,8 +46,7 @@ Table boundary(const Settings& settings) {
   };
   table.seen = fmt::format(
       "Error of the distance inside / on the rim, mean of the sources: AHM_a {:.4f} / {:.4f}, AHM_l {:.4f} / {:.4f}, "
-      "SHM "
-      "{:.4f} / {:.4f}, HM {:.4f} / {:.4f}.",
+      "SHM {:.4f} / {:.4f}, HM {:.4f} / {:.4f}.",
       rms("AHM_a", "inside"), rms("AHM_a", "rim"), rms("AHM_l", "inside"), rms("AHM_l", "rim"), rms("SHM", "inside"),
       rms("SHM", "rim"), rms("HM (graph)", "inside"), rms("HM (graph)", "rim"));
   return table;

@@ -1,5 +1,5 @@
-// Distances on clouds against exact ones of the mesh whose vertices the points are, and how often they are only bounded by
-// the straight line in space.
+// Distances on clouds, compared with exact distances of a mesh whose vertices are the points; and how often the straight
+// line in space determines them.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,14 +22,14 @@ namespace {
 
 constexpr int source_count = 9;
 
-/// Of all vertices and sources together, beyond three edges.
+/// Errors over all vertices and sources, beyond three edges from the source.
 struct Found {
   std::vector<double> error;  ///< relative, of the distance
-  double bounded = 0;         ///< distances no longer than the straight line in space
+  double bounded = 0;         ///< number of distances that are not longer than the straight line in space
   std::vector<double> trusted_error;
 };
 
-/// The points, each moved by `noise` mean edges in a random direction.
+/// Points moved by `noise` mean edges in random directions.
 std::vector<Vec3> moved(std::span<const Vec3> points, double noise, double edge) {
   std::mt19937_64 random(11);
   std::normal_distribution<double> normal(0, noise * edge / std::sqrt(3.0));
@@ -40,14 +40,14 @@ std::vector<Vec3> moved(std::span<const Vec3> points, double noise, double edge)
   return result;
 }
 
-/// World units; not finite where there is no way.
+/// Distances of all vertices, world units; not finite where there is no path.
 std::vector<double> distances(const exact::ExactMap& map, const Surface& surface) {
   std::vector<double> result;
   for (Index i = 0; i < surface.size(); ++i) result.push_back(map.distance(Vertex(i)) * surface.graph().length_unit());
   return result;
 }
 
-/// @param quality  empty: none
+/// @param quality  quality of each row; empty: unknown
 void compare(const pointcloud::PointCloudSurface& cloud, std::span<const double> distances,
              std::span<const double> quality, const std::vector<double>& truth, Index source, double near,
              Found& found) {

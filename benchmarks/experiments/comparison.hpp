@@ -1,5 +1,5 @@
 /// \file
-/// What the experiments share: a surface made ready for all methods, the methods, and errors against known answers.
+/// Common parts of the experiments: a surface prepared for all methods, the methods, and errors against exact values.
 ///
 /// \code
 /// const Surface surface("sphere", split_icosphere(10000));
@@ -25,7 +25,7 @@ namespace ahm::bench {
 /// A mesh and its graph; vertices and faces are those of the graph.
 class Surface {
  public:
-  /// Non-manifold edges are cut, whatever `options` say.
+  /// Nonmanifold edges are cut apart, whatever `options` contains.
   Surface(std::string name, const Mesh& mesh, trimesh::MeshOptions options = {});
 
   const std::string& name() const noexcept { return name_; }
@@ -39,10 +39,10 @@ class Surface {
   /// Exact log maps, n x 2: of a surface that lies in a plane, and of the unit sphere.
   std::vector<double> plane_log(Index source) const;
   std::vector<double> sphere_log(Index source) const;
-  /// Lengths of the shortest paths of edges: a measure of "how far" that favours no method. Infinite where there is none.
+  /// Lengths of the shortest edge paths: a measure of distance that favors no method. Infinite where there is no path.
   std::vector<double> path_lengths(Index source) const;
   Index nearest(const Vec3& point) const;
-  /// Of the input's faces; its vertices are those of the graph.
+  /// The input's faces; its vertices are those of the graph.
   exact::PolyhedralSurface polyhedron() const;
 
  private:
@@ -52,45 +52,45 @@ class Surface {
   std::vector<Triangle> faces_;
 };
 
-/// Runs `use` on every mesh of the user that has at most `largest` vertices. One on which it throws an `Error` is named on
-/// the error stream; the others go on.
+/// Runs `use` on every mesh of the user with at most `largest` vertices. If it throws an `Error`, the mesh is reported on
+/// the error stream and the loop continues.
 void for_user_surfaces(const Settings& settings, Index largest, const std::function<void(const Surface&)>& use);
 
 struct NamedMethod {
   std::string_view name;
   methods::Method (*make)(const TangentGraph&);
 };
-/// AHM_a, AHM_l, VHM_log, SEM, DEM as published.
+/// AHM_a, AHM_l, VHM_log, SEM, and DEM as published.
 std::span<const NamedMethod> log_map_methods();
 
-/// Errors of vectors against known ones, over chosen vertices.
+/// Errors of vectors over chosen vertices.
 struct Errors {
   double rms = 0, mean = 0, largest = 0;
-  Index count = 0;    ///< vertices measured
-  Index missing = 0;  ///< chosen vertices without coordinates
+  Index count = 0;    ///< number of vertices measured
+  Index missing = 0;  ///< number of chosen vertices without coordinates
 };
 using Choice = std::function<bool(std::size_t)>;
 Errors errors(std::span<const double> coordinates, std::span<const double> exact, const Choice& chosen);
 
-/// Root mean square error of distances over the vertices within an exact distance.
+/// Root mean square error of distances, over the vertices whose exact distance is at most `within`.
 double distance_rms(std::span<const double> found, std::span<const double> exact, double within);
 
 /// Cuts [0, longest finite length] into `count` equal rings and returns the ring of each length, -1 where infinite.
 std::vector<int> rings(std::span<const double> lengths, int count);
 
-/// A number that may not exist: an empty cell where it is not finite.
+/// The number as a cell; an empty cell where it is not finite.
 Cell known(double number);
 
-/// The value below which a share q of the values lie; values are not empty.
+/// The q-quantile of the values, which must not be empty.
 double quantile(std::vector<double> values, double q);
 
-/// The mean; values are not empty.
+/// The mean of the values, which must not be empty.
 double mean(std::span<const double> values);
 
-/// Lengths of n vectors of the plane.
+/// Lengths of n vectors in the plane.
 std::vector<double> lengths(std::span<const double> coordinates);
 
-/// Slope of log y over log x, least squares: the order of convergence where x is h and y the error.
+/// Least-squares slope of log y over log x: the order of convergence if x is h and y the error.
 double fitted_order(std::span<const double> x, std::span<const double> y);
 
 }  // namespace ahm::bench

@@ -15,7 +15,7 @@ constexpr NamedMethod methods[] = {
     {"VHM_log", [](const TangentGraph& g) { return methods::vector_heat_log(g); }},
     {"SEM", [](const TangentGraph& g) { return methods::smoothed_exponential(g); }}};
 
-/// The norms of the paper, and L2 short of the cut locus; mean over sources.
+/// The norms of the paper, and L2 away from the cut locus; means over the sources.
 struct Norms {
   double whole = 0, inside = 0, hemisphere = 0;
 };

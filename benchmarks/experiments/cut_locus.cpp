@@ -1,4 +1,4 @@
-// Fig. 12: a tube, where geodesics that run round both sides meet on a line opposite to the source.
+// Fig. 12: a tube. Geodesics around its two sides meet on a line opposite to the source.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace {
 constexpr double radius = 0.2;
 constexpr int edges_shown = 24;
 
-/// Unit vector towards a neighbour in the frame of a vertex.
+/// Unit vector towards a neighbor in the frame of a vertex.
 std::array<double, 2> towards(const TangentGraph& graph, Index vertex, Index neighbor) {
   const Star star = graph.star(vertex);
   const auto found = std::ranges::find(star.neighbors, neighbor);
@@ -21,15 +21,15 @@ std::array<double, 2> towards(const TangentGraph& graph, Index vertex, Index nei
   return {log[0] / length, log[1] / length};
 }
 
-/// The tube unrolled about the source, and how many edges round it each vertex is from the cut line. A tube of flat
-/// quads is itself flat, so this is exact.
+/// The tube unrolled about the source, and the number of edges from each vertex to the cut line, around the tube. A tube of
+/// flat quads is flat, so this is exact.
 struct Unrolled {
   Unrolled(const Surface& surface, int around, Index source) {
     const auto round = towards(surface.graph(), source, source + 1),
                along = towards(surface.graph(), source, source + around);
     const double side = 2 * radius * std::sin(std::numbers::pi / around);
     for (Index i = 0; i < surface.size(); ++i) {
-      Index step = (i - source) % around;  // vertices are numbered round the tube
+      Index step = (i - source) % around;  // vertices are numbered around the tube
       if (step < 0) step += around;
       if (step > around / 2) step -= around;
       from_cut.push_back(around / 2 - std::abs(step));
@@ -41,7 +41,7 @@ struct Unrolled {
   std::vector<Index> from_cut;
 };
 
-/// Share of the edges that the map stretches more than twice.
+/// Share of the edges that the map stretches by more than a factor of 2.
 double torn_share(const Surface& surface, std::span<const double> map) {
   Offset torn = 0, edges = 0;
   for (Index i = 0; i < surface.size(); ++i) {
@@ -77,7 +77,8 @@ Table cut_locus(const Settings& settings) {
   const Table finest = table.where("around", settings.toy ? "32" : "128").where("method", "AHM_a");
   auto at = [&](const char* edges) { return finest.where("edges from cut", edges).mean("mean / radius"); };
   table.seen = fmt::format(
-      "On the cut line AHM_a is off by {:.2g} radii (it averages the two sides), {:.2g} of it four, {:.2g} eight and "
+      "On the cut line the error of AHM_a is {:.2g} radii (it averages the two sides), {:.2g} of it four, {:.2g} eight "
+      "and "
       "{:.2g} twelve edges away; it tears {:.1f} % of the edges.",
       at("0"), at("4") / at("0"), at("8") / at("0"), at("12") / at("0"), 100 * finest.mean("torn edges"));
   return table;

@@ -1,4 +1,4 @@
-// Fig. 14: with and without the intrinsic Delaunay triangulation, on spheres of good and bad triangles.
+// Fig. 14: maps with and without the intrinsic Delaunay triangulation, on spheres of good and bad triangles.
 #include <fmt/format.h>
 
 #include "ahm/error.hpp"
@@ -7,7 +7,7 @@
 namespace ahm::bench {
 namespace {
 
-constexpr double within = 0.85 * std::numbers::pi;  // short of the cut locus
+constexpr double within = 0.85 * std::numbers::pi;  // away from the cut locus
 
 struct Triangulation {
   const char* name;

@@ -17,7 +17,7 @@ namespace {
 
 constexpr int source_count = 8;
 
-/// What the backends have in common: (u, v) at the points, for a source at a point, and the frame of that source.
+/// A common interface of the backends: the source at a point, (u, v) at the points, and the vertex of a point.
 struct Backend {
   const TangentGraph& graph;
   std::function<Source(Index point)> source;
@@ -48,7 +48,7 @@ void measure(const char* name, std::span<const Vec3> points, const Backend& back
     }
 }
 
-/// Triangle and polygon graphs.
+/// Measures triangle and polygon graphs.
 template <class Surface>
 void measure_mesh(const char* name, std::span<const Vec3> points, const Surface& surface, Table& table) {
   measure(name, points,

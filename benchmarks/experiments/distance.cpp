@@ -1,4 +1,4 @@
-// Fig. 20: distances against exact polyhedral ones, by distance from the source.
+// Fig. 20: distances compared with exact polyhedral ones, by distance from the source.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -26,7 +26,7 @@ constexpr DistanceMethod methods[] = {
     {"HM (graph)", [](const Surface& s) { return methods::heat_distance(s.graph()); }},
     {"SHM", [](const Surface& s) -> methods::Method { return std::make_unique<methods::SignedHeat>(s.graph()); }}};
 
-/// Their mean and quantiles, as cells.
+/// Adds the mean and quantiles of errors as a row.
 void add_row(const Surface& surface, const char* method, Cell where, const std::vector<double>& e, Table& table) {
   if (e.empty()) return;
   double mean = 0;
@@ -35,7 +35,7 @@ void add_row(const Surface& surface, const char* method, Cell where, const std::
              quantile(e, 1.0)});
 }
 
-/// Relative errors of one method over the rings about three sources, and over all vertices.
+/// Relative errors of one method in rings around three sources, and over all vertices.
 void measure(const Surface& surface, const DistanceMethod& method, std::span<const Index> sources,
              std::span<const std::vector<double>> exact, Table& table) {
   const methods::Method made = method.make(surface);
@@ -60,7 +60,7 @@ void measure(const Surface& surface, Table& table) {
   for (Index source : sources) exact.push_back(geodesics->solve(source).distance);
   for (const DistanceMethod& method : methods) try {
       measure(surface, method, sources, exact, table);
-    } catch (const InvalidGeometry&) {  // HM as published knows no faces without area
+    } catch (const InvalidGeometry&) {  // HM as published requires faces with area
       table.add({surface.name(), n, method.name, {}, {}, {}, {}, {}});
     }
 }

@@ -55,8 +55,7 @@ Table distortion(const Settings& settings) {
                          over_all(method.name, "median D"), over_all(method.name, "95% D"));
   table.seen = fmt::format(
       "Median / 95 % of D, median of the shapes: {}. The exact log map of the sphere has {:.2f} / {:.1f}: less than "
-      "that "
-      "is no merit.",
+      "that is no advantage.",
       found, over_all("exact", "median D"), over_all("exact", "95% D"));
   return table;
 }

@@ -1,4 +1,5 @@
-// Exact maps beside CGAL's exact distances and the maps of heat: cost, agreement, errors of vectors; fast paths.
+// Exact maps compared with CGAL's exact distances and with maps by heat: cost, agreement, errors of vectors. Also locally
+// shortest paths.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -14,7 +15,7 @@ namespace ahm::bench {
 namespace {
 
 constexpr int source_count = 3, path_count = 100;
-/// CGAL's exact geodesics take minutes and gigabytes beyond.
+/// Above this number of vertices, CGAL's exact geodesics take minutes and gigabytes.
 constexpr Index most_for_cgal = 15000;
 
 /// Processor time of all threads.
@@ -25,15 +26,15 @@ double cpu_seconds(const Work& work) {
   return static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC;
 }
 
-/// Maps within a tolerance.
+/// Results of maps with a tolerance.
 struct Tolerant {
-  double seconds = 0, error = 0;  ///< per map; of distances, relative, the largest
-  std::vector<double> vectors;    ///< errors
+  double seconds = 0, error = 0;  ///< seconds per map; largest relative error of a distance
+  std::vector<double> vectors;    ///< relative errors of vectors
 };
 
 constexpr double tolerance = 1e-3;
 
-/// Relative errors of heat's vectors, their axes being those of the exact ones, beyond two edges from the source.
+/// Relative errors of the vectors of heat maps, beyond two edges from the source. Both maps have the same axes.
 std::vector<double> vector_errors(const Surface& surface, const LogMap& exact, const LogMap& heat) {
   std::vector<double> errors;
   for (Index i = 0; i < surface.size(); ++i) {
@@ -104,7 +105,8 @@ Against cgal([[maybe_unused]] const Surface& surface, [[maybe_unused]] Vertex so
   return against;
 }
 
-/// Fast paths between random vertices: milliseconds each, and how much longer than exact ones they are.
+/// Locally shortest paths between random vertices: milliseconds per path, and by which share they are longer than exact
+/// ones.
 struct Paths {
   double milliseconds = 0;
   std::vector<double> longer;

@@ -1,5 +1,5 @@
 /// \file
-/// An experiment: a command that makes a table. Its figure is drawn from the table alone.
+/// An experiment: a command that makes a table. Its figure is drawn from the table only.
 ///
 /// \code
 /// Table my_figure(const Settings& settings) {                      // my_figure.cpp; declared and listed in registry.cpp,
@@ -11,7 +11,7 @@
 /// }
 /// \endcode
 ///
-/// `Settings::toy` asks for sizes that take seconds; the same laws must hold (benchmarks/tests/experiments).
+/// With `Settings::toy` experiments use sizes that take seconds; the same laws must hold (benchmarks/tests/experiments).
 #pragma once
 
 #include <concepts>
@@ -28,8 +28,8 @@ namespace ahm::bench {
 struct Settings {
   bool toy = false;              ///< small sizes, for a test run
   std::filesystem::path meshes;  ///< folder of the user's meshes; empty: generated shapes only
-  unsigned threads = 0;          ///< of what is timed; 0: one per core
-  std::vector<Index> vertices;   ///< sizes for the scaling experiments; empty: their own
+  unsigned threads = 0;          ///< number of threads of measured work; 0: one per core
+  std::vector<Index> vertices;   ///< sizes for the scaling experiments; empty: the default ones
 };
 
 /// A word, a number, or nothing.
@@ -39,7 +39,7 @@ class Cell {
   Cell(const char* word) : text_(word) {}
   Cell(std::string word) : text_(std::move(word)) {}
   Cell(std::string_view word) : text_(word) {}
-  /// @throws InvalidArgument when the number is not finite: what has no number stays empty
+  /// @throws InvalidArgument (a number that is not finite; leave the cell empty instead)
   Cell(std::floating_point auto number) : text_(format(static_cast<double>(number))) {}
   Cell(std::integral auto number) : text_(std::to_string(number)) {}
 
@@ -60,14 +60,14 @@ class Table {
 
   const std::vector<std::string>& columns() const noexcept { return columns_; }
   const std::vector<std::vector<Cell>>& rows() const noexcept { return rows_; }
-  /// @throws InvalidArgument when there is no such column
+  /// @throws InvalidArgument (no such column)
   std::size_t column(std::string_view name) const;
   /// The rows with `word` in a column.
   Table where(std::string_view column, std::string_view word) const;
   /// The numbers of a column, without the empty cells.
-  /// @throws InvalidArgument when a cell is no number
+  /// @throws InvalidArgument (a cell that is not a number)
   std::vector<double> numbers(std::string_view column) const;
-  /// @throws InvalidArgument when the column holds no number
+  /// @throws InvalidArgument (a column without numbers)
   double largest(std::string_view column) const;
   double smallest(std::string_view column) const;
   double mean(std::string_view column) const;
@@ -77,7 +77,7 @@ class Table {
   void write(const std::filesystem::path& path) const;
   static Table read(const std::filesystem::path& path);
 
-  std::string seen;  ///< what the numbers say, in two sentences at most
+  std::string seen;  ///< the result in two sentences at most
 
  private:
   std::vector<std::string> columns_;
@@ -85,14 +85,14 @@ class Table {
 };
 
 struct Experiment {
-  std::string_view name;    ///< of the command, the table and the plot
-  std::string_view figure;  ///< of Soliman & Sharp 2025, or "scaling"
+  std::string_view name;    ///< name of the command, the table and the plot
+  std::string_view figure;  ///< figure of Soliman & Sharp 2025, or "scaling"
   std::string_view title;
-  std::string_view paper;  ///< what the paper shows, in two sentences at most
+  std::string_view paper;  ///< result of the paper, in two sentences at most
   Table (*run)(const Settings&);
 };
 
-/// All of them, in the order of the report.
+/// All experiments, in the order of the report.
 std::span<const Experiment> experiments();
 
 }  // namespace ahm::bench

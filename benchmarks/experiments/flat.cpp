@@ -1,4 +1,4 @@
-// Fig. 6: the plane, where the answer is known and a method has no excuse.
+// Fig. 6: the plane, where the exact map is known.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -11,7 +11,7 @@
 namespace ahm::bench {
 namespace {
 
-constexpr int near_rings = 3;  // mean edges that count as near the source
+constexpr int near_rings = 3;  // radius, in mean edges, of the vertices near the source
 
 void measure(const std::string& name, const Mesh& mesh, Table& table) {
   const Surface surface(name, mesh);

@@ -1,4 +1,4 @@
-// Fig. 27: planar mazes, where no straight line leads from the source to most points.
+// Fig. 27: planar mazes, where straight lines from the source reach only few points.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,8 +26,9 @@ Table mazes(const Settings& settings) {
   }
   auto worst = [&](const char* method) { return table.where("method", method).largest("largest / diameter"); };
   table.seen = fmt::format(
-      "AHM_a and AHM_l are off by {:.1g} of the diameter, also {:.0f} diameters of path away from the source; VHM_log "
-      "by {:.2g}, SEM by {:.2g}.",
+      "The errors of AHM_a and AHM_l are {:.1g} of the diameter, even where the path to the source is {:.0f} diameters "
+      "long; "
+      "VHM_log {:.2g}, SEM {:.2g}.",
       std::max(worst("AHM_a"), worst("AHM_l")), table.largest("longest path / diameter"), worst("VHM_log"),
       worst("SEM"));
   return table;

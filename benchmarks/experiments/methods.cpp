@@ -1,4 +1,4 @@
-// Every method on the same graphs of the unit sphere, against the closed form.
+// All methods on the same graphs of the unit sphere, compared with the closed form.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -13,7 +13,7 @@
 namespace ahm::bench {
 namespace {
 
-/// Mean squares over the vertices within 0.9 pi of the sources.
+/// Sums of squared errors over the vertices within 0.9 pi of the sources.
 struct SquareErrors {
   double distance = 0, angle = 0, map = 0;
   int count = 0;

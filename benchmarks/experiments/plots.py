@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws DIR/NAME.svg of every DIR/NAME.csv that ahm-bench wrote and that a function NAME below draws: plots.py DIR"""
+"""Draws DIR/NAME.svg of every DIR/NAME.csv of ahm-bench for which there is a function NAME below: plots.py DIR"""
 
 import csv
 import pathlib
@@ -15,7 +15,7 @@ matplotlib.rcParams.update({"svg.fonttype": "none", "svg.hashsalt": "ahm", "font
                             "axes.spines.top": False, "axes.spines.right": False})
 import matplotlib.pyplot as plt
 
-# Okabe and Ito's colors, and a marker each, so that nothing hangs on color alone.
+# Okabe and Ito's colors, each with a marker, so that lines can be distinguished without color.
 LOOKS = {"AHM_a": ("#0072B2", "o"), "AHM_l": ("#56B4E9", "s"), "VHM_log": ("#D55E00", "^"), "SEM": ("#CC79A7", "v"),
          "DEM": ("#E69F00", "P"), "HM": ("#009E73", "X"), "HM (graph)": ("#009E73", "x"), "SHM": ("#E69F00", "d"),
          "DEM, along the path": ("#D55E00", ">"), "DEM, averaged": ("#CC79A7", "<"), "exact": ("#888888", "."),
@@ -39,7 +39,7 @@ def only(rows, **wanted):
 
 
 def values(rows, column):
-    """The different words in a column, in the order of the file."""
+    """The different words in a column, in their order in the file."""
     return list(dict.fromkeys(row[column] for row in rows))
 
 
@@ -50,7 +50,7 @@ def look(name, place=0):
 
 
 def numbers(rows, x, y):
-    """The pairs where both are numbers."""
+    """The pairs (x, y) of the rows in which both are numbers, sorted."""
     pairs = []
     for row in rows:
         try:
@@ -71,7 +71,7 @@ def panels(count, width=3.4, height=2.9, columns=3):
 
 
 def lines(axis, rows, x, y, by, logx=False, logy=False, title=None, ylabel=None, xlabel=None):
-    """One line for each word in the column `by`."""
+    """Draws one line for each word in the column `by`."""
     for place, name in enumerate(values(rows, by)):
         pairs = numbers(only(rows, **{by: name}), x, y)
         if pairs:
@@ -82,13 +82,13 @@ def lines(axis, rows, x, y, by, logx=False, logy=False, title=None, ylabel=None,
     if logy:
         axis.set_yscale("log")
         low, high = axis.get_ylim()
-        if high < 100 * low:  # else matplotlib writes 1.2 x 10^0
+        if high < 100 * low:  # otherwise matplotlib writes 1.2 x 10^0
             axis.yaxis.set_major_formatter("{x:g}")
             axis.yaxis.set_minor_formatter("{x:g}" if high < 12 * low else "")
 
 
 def dots(axis, rows, group, y, by, logy=True, title=None, ylabel=None):
-    """A column of marks, side by side, for each word in the column `group`."""
+    """Draws a column of marks for each word in the column `group`; marks of different `by` are side by side."""
     groups, names = values(rows, group), values(rows, by)
     for place, name in enumerate(names):
         aside = 0.5 * ((place + 0.5) / len(names) - 0.5)
@@ -102,7 +102,7 @@ def dots(axis, rows, group, y, by, logy=True, title=None, ylabel=None):
 
 
 def legend(figure, axes):
-    """One for all panels, above them."""
+    """Draws one legend for all panels, above them."""
     entries = {}
     for axis in axes:
         for handle, name in zip(*axis.get_legend_handles_labels()):
@@ -115,7 +115,7 @@ def legend(figure, axes):
 
 
 def by_shape(rows, x, y, by, column="shape", **options):
-    """A panel for each shape."""
+    """A figure with one panel for each shape."""
     shapes = values(rows, column)
     figure, axes = panels(len(shapes))
     for axis, shape in zip(axes, shapes):
@@ -123,7 +123,7 @@ def by_shape(rows, x, y, by, column="shape", **options):
     return legend(figure, axes)
 
 
-# One function per experiment: rows in, figure out.
+# One function per experiment: from the rows of its table to a figure.
 
 def flat(rows):
     figure, axes = panels(2, width=4.6)
@@ -172,7 +172,7 @@ def variants(rows):
     figure, axes = panels(2, width=4.4)
     lines(axes[0], rows, "distance / longest", "median difference", "shape", logy=True, title="all vertices")
     lines(axes[1], rows, "distance / longest", "median difference, trusted", "shape", logy=True,
-          title="where the map is trusted")
+          title="where the quality is above 0.5")
     return legend(figure, axes)
 
 
@@ -229,7 +229,7 @@ def radial(rows):
 
 
 def trust(rows):
-    """The 95th percentile of the vectors' errors, mesh by mesh."""
+    """The meshes by the 95th percentile of their vector errors."""
     kinds = values(rows, "as")
     figure, axes = panels(len(kinds), width=3.6)
     for axis, kind in zip(axes, kinds):

@@ -1,4 +1,4 @@
-// The unit sphere as polygons of many kinds: refined or as they are, against the closed form.
+// The unit sphere as polygon meshes of many kinds, refined or as polygons, compared with the closed form.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ using test::Polygons;
 
 constexpr int source_count = 6;
 
-/// Quads between parallels and meridians, triangles about the poles: with 2 `rings` sectors square at the equator.
+/// Quads between parallels and meridians, triangles at the poles. With sectors = 2 rings, quads at the equator are square.
 Polygons globe(Index rings, Index sectors) {
   Polygons mesh;
   const auto at = [&](Index ring, Index sector) { return 1 + (ring - 1) * sectors + sector % sectors; };
@@ -42,7 +42,7 @@ Polygons globe(Index rings, Index sectors) {
   return mesh;
 }
 
-/// The outline of faces that make up a disk.
+/// The boundary loop of faces that form a disk.
 std::vector<Index> outline(const Polygons& mesh, std::span<const Index> faces) {
   std::map<std::pair<Index, Index>, int> sides;
   for (Index f : faces) {
@@ -59,7 +59,7 @@ std::vector<Index> outline(const Polygons& mesh, std::span<const Index> faces) {
   return result;
 }
 
-/// A cube-sphere of 6 x side x side quads, three of every block of four joined to an L of eight corners.
+/// A cube-sphere of 6 x side x side quads. Of each block of four quads, three are joined to an L of eight corners.
 Polygons concave_sphere(Index side) {
   const Polygons quads = test::cube_sphere(side);
   Polygons mesh;
@@ -78,7 +78,7 @@ struct Errors {
   double distance_rms = 0, distance_hemisphere = 0;
 };
 
-/// Means over sources, but the largest errors of all.
+/// Means over the sources; for `hemisphere` the largest errors over the sources.
 Errors errors(const Polygons& mesh, const Surface& surface, const LogMapSolver& solver, Variant variant) {
   Errors mean;
   for (Index s = 0; s < source_count; ++s) {

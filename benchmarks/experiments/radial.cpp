@@ -1,4 +1,4 @@
-// Fig. 21: the radial vector field on ever thinner triangles, by affine and by vector diffusion.
+// Fig. 21: the radial vector field on increasingly thin triangles, by affine and by vector diffusion.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace {
 using std::numbers::pi;
 constexpr int source_count = 4;
 
-/// The exact radial direction at q seen from p, not normalized; empty where q is too near or at the cut locus.
+/// The exact radial direction at q from p, not normalized; empty where q is too near or at the cut locus.
 using Radial = std::optional<Vec3> (*)(const Vec3& p, const Vec3& q);
 
 std::optional<Vec3> on_sphere(const Vec3& p, const Vec3& q) {
@@ -86,8 +86,7 @@ Table radial(const Settings& settings) {
   };
   table.seen = fmt::format(
       "Mean angle to the exact field in radians, affine / vector diffusion: plane {:.1g} / {:.3f}, stretched "
-      "icospheres "
-      "{:.3f} / {:.3f}, parallels and meridians {:.3f} / {:.3f}.",
+      "icospheres {:.3f} / {:.3f}, parallels and meridians {:.3f} / {:.3f}.",
       angle("plane", "affine"), angle("plane", "vector"), angle("sphere, stretched", "affine"),
       angle("sphere, stretched", "vector"), angle("sphere, parallels", "affine"), angle("sphere, parallels", "vector"));
   return table;

@@ -44,7 +44,7 @@ std::string quoted_for_shell(const std::string& text) {
   return result + "'";
 }
 
-/// Runs plots.py; what went wrong, or nothing.
+/// Runs plots.py. Returns an error message, empty if there was no error.
 std::string draw(const std::filesystem::path& folder) {
   const std::string command = fmt::format("{} {} {}", quoted_for_shell(AHM_BENCH_PYTHON),
                                           quoted_for_shell(AHM_BENCH_PLOTS), quoted_for_shell(folder.string()));
@@ -64,7 +64,7 @@ std::string whole_file(const std::filesystem::path& path) {
   return text.str();
 }
 
-/// The drawing without its XML header, which has no place inside a page.
+/// The SVG element without its XML header, which is not allowed inside a page.
 std::string inlined_svg(const std::filesystem::path& path) {
   const std::string text = whole_file(path);
   const std::size_t begin = text.find("<svg");
@@ -108,7 +108,7 @@ std::string machine_line(const nlohmann::ordered_json& machine) {
 Report write_report(const std::filesystem::path& folder) {
   const RunRecord record(folder);
   if (std::ranges::none_of(experiments(), [&](const Experiment& e) { return record.find(e.name); }))
-    throw IoError(folder.string() + ": holds no results; run `ahm-bench run all -o` it first");
+    throw IoError(folder.string() + ": contains no results; run `ahm-bench run all -o` it first");
   Report report{folder / "index.html", draw(folder)};
   std::string links, sections, machine;
   for (const Experiment& experiment : experiments()) {
@@ -125,7 +125,7 @@ Report write_report(const std::filesystem::path& folder) {
        << machine << "<nav>" << links << "</nav>\n"
        << (report.problem.empty() ? "" : "<p><b>" + escaped(report.problem) + "</b></p>\n") << sections
        << "</body></html>\n";
-  if (!file.flush()) throw IoError(report.page.string() + ": cannot be written; is the disk full?");
+  if (!file.flush()) throw IoError(report.page.string() + ": cannot be written; check that the disk is not full");
   return report;
 }
 

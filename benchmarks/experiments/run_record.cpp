@@ -17,7 +17,7 @@
 namespace ahm::bench {
 namespace {
 
-/// What follows the colon on the first line of a file of /proc that begins with `key`; empty where there is none.
+/// The text after the colon on the first line of a /proc file that begins with `key`; empty where there is none.
 std::string proc_entry(const char* file, std::string_view key) {
   std::ifstream in(file);
   for (std::string line; std::getline(in, line);)
@@ -28,7 +28,7 @@ std::string proc_entry(const char* file, std::string_view key) {
   return "";
 }
 
-/// Gives freed memory back and makes Linux forget the largest so far; elsewhere the peak is that of the process.
+/// Returns freed memory to the system and resets the peak memory on Linux. Elsewhere the peak is that of the whole process.
 void forget_peak() {
 #ifdef __GLIBC__
   malloc_trim(0);
@@ -36,7 +36,7 @@ void forget_peak() {
   std::ofstream("/proc/self/clear_refs") << 5;
 }
 
-/// Largest resident memory since `forget_peak`.
+/// Peak memory since `forget_peak`, MB.
 double peak_since_megabytes() {
   const std::string peak = proc_entry("/proc/self/status", "VmHWM");
   return peak.empty() ? peak_megabytes() : std::stod(peak) * 1.024e-3;
@@ -59,7 +59,7 @@ nlohmann::ordered_json machine() {
 RunRecord::RunRecord(std::filesystem::path folder) : folder_(std::move(folder)) {
   std::error_code error;
   std::filesystem::create_directories(folder_, error);
-  if (error) throw IoError(folder_.string() + ": " + error.message() + "; name a folder that can be made (-o)");
+  if (error) throw IoError(folder_.string() + ": " + error.message() + "; choose a folder that can be created (-o)");
   read();
 }
 
@@ -68,7 +68,7 @@ void RunRecord::read() {
   if (!std::filesystem::exists(path)) return;
   std::ifstream file(path);
   json_ = nlohmann::ordered_json::parse(file, nullptr, false);
-  if (json_.is_discarded()) throw IoError(path.string() + ": is no JSON; delete it and run the experiments again");
+  if (json_.is_discarded()) throw IoError(path.string() + ": is not JSON; delete it and run the experiments again");
 }
 
 void RunRecord::run(const Experiment& experiment, const Settings& settings) {
@@ -86,7 +86,7 @@ void RunRecord::run(const Experiment& experiment, const Settings& settings) {
                                {"finished", fmt::format("{:%F %T}", fmt::gmtime(std::time(nullptr)))},
                                {"machine", machine()}};
   table.write(folder_ / (std::string(experiment.name) + ".csv"));
-  read();  // another run may have written meanwhile
+  read();  // another process may have written to it in the meantime
   json_[std::string(experiment.name)] = std::move(entry);
   std::ofstream file(folder_ / "run.json");
   file << json_.dump(2) << '\n';

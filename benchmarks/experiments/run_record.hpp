@@ -1,8 +1,8 @@
 /// \file
-/// What was run, when, on what, how long, with how much memory: DIR/run.json.
+/// The record of all runs, DIR/run.json: experiment, date, machine, time and memory.
 ///
 /// \code
-/// RunRecord record(folder);                  // takes up what an earlier run left there
+/// RunRecord record(folder);                  // keeps the results of earlier runs in this folder
 /// record.run(experiment, settings);          // writes folder/NAME.csv and folder/run.json
 /// \endcode
 #pragma once
@@ -16,20 +16,21 @@ namespace ahm::bench {
 
 class RunRecord {
  public:
-  /// Creates the folder where it is missing.
-  /// @throws IoError (folder cannot be made, run.json cannot be read)
+  /// Creates the folder if it is missing.
+  /// @throws IoError (folder cannot be created, run.json cannot be read)
   explicit RunRecord(std::filesystem::path folder);
 
-  /// Runs the experiment and writes its table and the record.
-  /// @throws IoError, and what the experiment throws
+  /// Runs an experiment and writes its table and the record.
+  /// @throws IoError, and the exceptions of the experiment
   void run(const Experiment& experiment, const Settings& settings);
 
-  /// Of an experiment that was run: figure, title, paper, seen, seconds, peak_megabytes, toy, meshes, machine.
+  /// The record of an experiment: figure, title, paper, seen, seconds, peak_megabytes, toy, meshes, machine. Null if it was
+  /// not run.
   const nlohmann::ordered_json* find(std::string_view name) const;
   const std::filesystem::path& folder() const noexcept { return folder_; }
 
  private:
-  /// What run.json holds, also from other runs.
+  /// Reads run.json, which may contain results of other runs.
   void read();
 
   std::filesystem::path folder_;

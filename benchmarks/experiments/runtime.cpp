@@ -1,4 +1,4 @@
-// Fig. 22: run time by size, of the first map and of further ones; and beside it the vector heat method's.
+// Fig. 22: run time by size, of the first map and of additional ones, compared with the vector heat method.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -38,7 +38,7 @@ void measure(const std::string& name, const Mesh& mesh, unsigned threads, Table&
              vector_factor + vector_further, vector_further});
 }
 
-/// Generated surfaces, one after the other.
+/// A generated surface: jittered sphere (0) or torus (1).
 Mesh generated(int number, Index n) { return number == 0 ? jittered_icosphere(n, 0.15) : torus(n); }
 
 double order(const Table& table, std::string_view what) {
@@ -65,9 +65,9 @@ Table runtime(const Settings& settings) {
     return quantile(x, 0.5);
   };
   table.seen = fmt::format(
-      "The first map takes n^{:.2f}, a further one n^{:.2f}. A further AHM_a takes 1/{:.0f} of the first, AHM_l "
-      "1/{:.0f}; "
-      "the first AHM_a {:.2f} times, AHM_l {:.2f} times as long as VHM_log (medians).",
+      "The first map takes n^{:.2f}, an additional one n^{:.2f}. An additional AHM_a takes 1/{:.0f} of the first, "
+      "AHM_l "
+      "1/{:.0f}; the first AHM_a {:.2f} times, AHM_l {:.2f} times as long as VHM_log (medians).",
       order(table, "first AHM_a s"), order(table, "further AHM_a s"), ratio("first AHM_a s", "further AHM_a s"),
       ratio("first AHM_l s", "further AHM_l s"), ratio("first AHM_a s", "first VHM_log s"),
       ratio("first AHM_l s", "first VHM_log s"));

@@ -20,7 +20,7 @@ Vec3 on_sphere(double polar, double turn) {
   return {std::sin(polar) * std::cos(turn), std::sin(polar) * std::sin(turn), std::cos(polar)};
 }
 
-/// Of `settings.meshes` and below, by size.
+/// Mesh files in `settings.meshes` and its subfolders, sorted by size.
 std::vector<std::filesystem::path> mesh_files(const Settings& settings) {
   std::vector<std::pair<std::uintmax_t, std::filesystem::path>> files;
   if (!settings.meshes.empty())
@@ -43,7 +43,7 @@ bool only_triangles(const io::Geometry& file) {
 NamedMesh read_triangles(const std::filesystem::path& path) {
   const io::Geometry file = io::read(path);
   if (file.face_count() == 0) throw InvalidGeometry("has no faces");
-  if (!only_triangles(file)) throw InvalidGeometry("no triangle mesh");
+  if (!only_triangles(file)) throw InvalidGeometry("is not a triangle mesh");
   NamedMesh mesh{{file.points, {}, {}}, path.stem().string()};
   for (std::size_t f = 0; f < file.face_count(); ++f)
     mesh.faces.push_back({file.face(f)[0], file.face(f)[1], file.face(f)[2]});
@@ -76,7 +76,7 @@ std::vector<NamedPolygons> user_polygons(const Settings& settings, Index largest
         mesh.add({face.begin(), face.end()});
       }
     } catch (const Error&) {
-      continue;  // `user_meshes` names it
+      continue;  // reported by `user_meshes`
     }
   return meshes;
 }
@@ -203,7 +203,8 @@ Mesh closed_cone(double angle, int rings) {
   Mesh mesh = cone(angle, rings);
   const Mesh upper = mesh;
   const double rim = upper.positions.back()[2];
-  std::vector<Index> mirrored;  // of the vertices of the upper one; those of the rim are shared
+  std::vector<Index> mirrored;  // for each vertex of the upper cone its mirror image; the vertices of the rim are
+                                // shared
   for (Index i = 0; i < static_cast<Index>(upper.positions.size()); ++i) {
     const Vec3& p = upper.positions[i];
     mirrored.push_back(p[2] == rim ? i : static_cast<Index>(mesh.positions.size()));

@@ -1,5 +1,5 @@
 /// \file
-/// The surfaces of the experiments: generated ones, and those of the user.
+/// The surfaces of the experiments: generated ones, and the user's meshes.
 ///
 /// \code
 /// for (const NamedMesh& mesh : user_meshes(settings)) use(mesh.name, mesh.positions, mesh.faces);
@@ -22,31 +22,31 @@ struct NamedPolygons : test::Polygons {
   std::string name;
 };
 
-/// Every triangle mesh of the folder `settings.meshes` and below, by size of file, that has at most `largest` vertices.
-/// What cannot be read, or has other polygons, is named on the error stream and left out.
+/// The triangle meshes in `settings.meshes` and its subfolders with at most `largest` vertices, sorted by file size. Files
+/// that cannot be read, or that contain other polygons, are reported on the error stream and left out.
 std::vector<NamedMesh> user_meshes(const Settings& settings, Index largest = 1'000'000'000);
-/// Every other mesh there, of polygons.
+/// The polygon meshes in `settings.meshes` and its subfolders that are not triangle meshes.
 std::vector<NamedPolygons> user_polygons(const Settings& settings, Index largest);
 
-/// Sphere by meridians and parallels; few parallels make long thin triangles. `last` < pi leaves it open at the bottom.
+/// A sphere of meridians and parallels; few parallels make long thin triangles. `last` < pi leaves it open at the bottom.
 Mesh parallels_and_meridians(int parallels, int meridians, double last = std::numbers::pi);
-/// Icosphere whose faces got one more vertex each, close to a side: caps and needles.
+/// An icosphere with an additional vertex in each face, close to a side: caps and needles.
 Mesh with_needles(Index n);
-/// Icosphere whose points were moved along the sphere by up to `amount` edge lengths.
+/// An icosphere whose points are moved along the sphere by up to `amount` edge lengths.
 Mesh jittered_icosphere(Index n, double amount);
-/// Icosphere of 642 vertices with random points put into random faces, n in all: triangles of every shape.
+/// An icosphere of 642 vertices with random points inserted into random faces, n vertices in all: triangles of every shape.
 Mesh sliver_sphere(Index n);
-/// Icosphere stretched along the z axis and pulled back to the sphere: triangles up to `factor` times as long as wide.
+/// An icosphere stretched along the z axis and projected to the sphere: triangles up to `factor` times as long as wide.
 Mesh stretched_icosphere(Index n, double factor);
-/// Ellipsoid of half axes 1, 1, 2.
+/// An ellipsoid of half axes 1, 1, 2.
 Mesh ellipsoid(Index n);
-/// Sphere with smooth bumps, a few across.
+/// A sphere with smooth bumps, a few across.
 Mesh bumpy_sphere(Index n);
-/// Open cone of the given total angle and slant 1, its apex inside, in jittered rings.
+/// An open cone of total angle `angle` and slant 1, with an inner vertex at the apex and jittered rings.
 Mesh cone(double angle, int rings);
-/// Two of them, rim to rim: closed, with a sharp edge around.
+/// Two cones joined at their rims: closed, with a sharp edge around.
 Mesh closed_cone(double angle, int rings);
-/// Open tube of the given radius about the x axis and length 2, its quads as square as can be.
+/// An open tube of this radius about the x axis, of length 2. Its quads are as square as possible.
 Mesh tube(int around, double radius);
 
 }  // namespace ahm::bench

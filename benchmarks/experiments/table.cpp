@@ -38,7 +38,7 @@ std::vector<std::string> split(const std::string& line) {
 
 std::vector<double> some_numbers(const Table& table, std::string_view name) {
   std::vector<double> numbers = table.numbers(name);
-  if (numbers.empty()) throw InvalidArgument(fmt::format("Table: column '{}' holds no numbers", name));
+  if (numbers.empty()) throw InvalidArgument(fmt::format("Table: column '{}' contains no numbers", name));
   return numbers;
 }
 
@@ -46,7 +46,7 @@ std::vector<double> some_numbers(const Table& table, std::string_view name) {
 
 std::string Cell::format(double number) {
   if (!std::isfinite(number))
-    throw InvalidArgument(fmt::format("Cell: the number is {}; leave the cell empty where there is none", number));
+    throw InvalidArgument(fmt::format("Cell: the number is {}; leave the cell empty instead", number));
   return fmt::format("{:.6g}", number);
 }
 
@@ -54,15 +54,16 @@ Table::Table(std::vector<std::string> columns) : columns_(std::move(columns)) {}
 
 void Table::add(std::vector<Cell> row) {
   if (row.size() != columns_.size())
-    throw InvalidArgument(fmt::format("Table::add: row {} has {} cells, the table {} columns; give one cell per column",
-                                      rows_.size(), row.size(), columns_.size()));
+    throw InvalidArgument(
+        fmt::format("Table::add: row {} has {} cells, but the table {} columns; pass one cell per column", rows_.size(),
+                    row.size(), columns_.size()));
   rows_.push_back(std::move(row));
 }
 
 std::size_t Table::column(std::string_view name) const {
   const auto found = std::find(columns_.begin(), columns_.end(), name);
   if (found == columns_.end())
-    throw InvalidArgument(fmt::format("Table: no column '{}'; there are {}", name, fmt::join(columns_, ", ")));
+    throw InvalidArgument(fmt::format("Table: no column '{}'; the columns are {}", name, fmt::join(columns_, ", ")));
   return static_cast<std::size_t>(found - columns_.begin());
 }
 
@@ -83,7 +84,8 @@ std::vector<double> Table::numbers(std::string_view name) const {
     double number = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
     if (error != std::errc() || end != text.data() + text.size())
-      throw InvalidArgument(fmt::format("Table::numbers: column '{}' holds '{}', which is no number", name, text));
+      throw InvalidArgument(
+          fmt::format("Table::numbers: column '{}' contains '{}', which is not a number", name, text));
     result.push_back(number);
   }
   return result;
@@ -107,7 +109,7 @@ void Table::write(const std::filesystem::path& path) const {
   line(columns_, [](const std::string& name) { return name; });
   for (const auto& row : rows_) line(row, [](const Cell& cell) { return cell.text(); });
   if (!file.flush())
-    throw IoError(path.string() + ": cannot be written; is the folder writable and the disk not full?");
+    throw IoError(path.string() + ": cannot be written; check that the folder is writable and the disk is not full");
 }
 
 Table Table::read(const std::filesystem::path& path) {

@@ -1,4 +1,4 @@
-// Fig. 23: spheres of few and of badly shaped triangles. All methods work on the intrinsic Delaunay triangulation.
+// Fig. 23: spheres of few and of bad triangles. All methods use the intrinsic Delaunay triangulation.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 namespace ahm::bench {
 namespace {
 
-/// @param exact  log map, n x 2, where it is known, else empty
+/// @param exact  log map, n x 2; empty where it is unknown
 void measure(const Surface& surface, Index source, std::span<const double> exact, std::span<const double> distance,
              double within, Table& table) {
   for (const NamedMethod& method : log_map_methods()) {
@@ -23,15 +23,15 @@ void measure(const Surface& surface, Index source, std::span<const double> exact
   }
 }
 
-/// Against the closed form on the unit sphere.
+/// Measures a mesh of the unit sphere against the closed form.
 void measure_sphere(const char* name, const Mesh& mesh, Table& table) {
   const Surface surface(name, mesh);
   const Index source = surface.size() / 3;
   const std::vector<double> exact = surface.sphere_log(source), distance = lengths(exact);
-  measure(surface, source, exact, distance, 0.85 * std::numbers::pi, table);  // short of the cut locus
+  measure(surface, source, exact, distance, 0.85 * std::numbers::pi, table);  // away from the cut locus
 }
 
-/// Against exact distances on a far finer mesh, whose first vertices are those of the coarse ones.
+/// Measures coarse meshes against exact distances on a much finer one, which begins with their vertices.
 void measure_bumpy([[maybe_unused]] const Settings& settings, [[maybe_unused]] Table& table) {
 #ifdef AHM_METHODS_CGAL
   const Mesh fine = bumpy_sphere(settings.toy ? 2562 : 10242);

@@ -1,4 +1,4 @@
-// Fig. 13: diffusion times over orders of magnitude.
+// Fig. 13: errors for diffusion times over orders of magnitude.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ constexpr TimedMethod methods[] = {
     {"VHM_log", [](const TangentGraph& g, double t) { return methods::vector_heat_log(g, {.t_coef = t}); }},
     {"SEM", [](const TangentGraph& g, double t) { return methods::smoothed_exponential(g, t); }}};
 
-/// @param exact  log map, n x 2, where it is known, else empty
+/// @param exact  log map, n x 2; empty where it is unknown
 void measure(const Surface& surface, Index source, std::span<const double> exact, std::span<const double> distance,
              double within, Table& table) {
   for (double t_coef : {0.01, 0.1, 1.0, 10.0, 100.0, 1000.0})
@@ -43,7 +43,7 @@ Table times(const Settings& settings) {
   const Index n = settings.toy ? 600 : 10000;
   const Surface sphere("sphere", split_icosphere(n));
   const Index middle = sphere.size() / 3;
-  measure_known(sphere, middle, sphere.sphere_log(middle), 0.85 * std::numbers::pi, table);  // short of the cut locus
+  measure_known(sphere, middle, sphere.sphere_log(middle), 0.85 * std::numbers::pi, table);  // away from the cut locus
 #ifdef AHM_METHODS_CGAL
   const Surface bumpy("bumpy sphere", bumpy_sphere(n));
   const std::vector<double> exact = methods::exact_distance(bumpy.points(), bumpy.faces())->solve(middle).distance;

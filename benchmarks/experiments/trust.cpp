@@ -1,4 +1,5 @@
-// Vectors and distances of polar maps and of maps by heat against exact ones, and whether vectors that are trusted are right.
+// Vectors and distances of polar maps and of maps by heat compared with exact ones, and the share of right vectors among
+// those of high quality.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -30,26 +31,26 @@ namespace {
 using Complex = std::complex<double>;
 constexpr int source_count = 5;
 constexpr Index largest_mesh = 200'000;
-/// A vector is right when it is off by less than this share of the distance.
+/// A vector is right if its error is less than this share of the distance.
 constexpr double right = 0.1;
-/// Offset of noisy points, in mean edge lengths.
+/// Standard deviation of the coordinates of noisy points, in mean edge lengths.
 constexpr double noise = 0.2;
 
-/// The errors of one map: one entry per vertex that is compared.
+/// The errors of one map, with one entry per compared vertex.
 struct Found {
   std::vector<double> vector_error, distance_error;  ///< relative to the distance
   std::vector<double> quality;
 };
 
-/// Where exact maps run.
+/// The surface on which exact maps are computed.
 struct Ground {
   std::string name;
   const exact::PolyhedralSurface& polyhedral;
-  double unit;       ///< of its lengths
+  double unit;       ///< length unit of `polyhedral`, world units
   double mean_edge;  ///< world units
 };
 
-/// A discretization of the same surface: the points of the ground that are compared, and which of its rows is the k-th.
+/// A discretization of the same surface: the compared points on the ground, and the row of the k-th one.
 struct View {
   std::string name;
   const ahm::Surface& surface;
@@ -60,7 +61,7 @@ struct View {
   Vertex vertex(Index k) const { return surface.vertex(row(k)); }
 };
 
-/// Left out are vertices nearer than two edges or 3 % of the largest distance: there the vectors are short and the edges few.
+/// Leaves out vertices nearer than two edges or 3 % of the largest distance, where vectors are short and edges few.
 Found compare(const Ground& ground, const exact::ExactMap& truth, const View& view, const LogMap& map) {
   const std::vector<double> quality = map_quality(view.surface.graph(), map);
   double farthest = 0;
@@ -81,7 +82,7 @@ Found compare(const Ground& ground, const exact::ExactMap& truth, const View& vi
     found.distance_error.push_back(std::abs(map.distance(v) - d) / d);
     found.quality.push_back(quality[v.index]);
   }
-  // The axes of the two differ by a rotation, and those of points perhaps by a reflection: what fits best near the source.
+  // The axes of the maps differ by a rotation; on points also by a reflection, perhaps. Both are fitted near the source.
   const double third = away.empty() ? 0 : quantile(away, 0.3);
   Complex turn = 0, turn_back = 0;
   for (std::size_t k = 0; k < exact.size(); ++k) {
@@ -99,7 +100,8 @@ Found compare(const Ground& ground, const exact::ExactMap& truth, const View& vi
   return found;
 }
 
-/// How often a right vector has the higher quality of a pair with a wrong one; nothing where all are of one kind.
+/// Area under the curve: how often, in a pair of a right and a wrong vector, the right one has the higher quality. Empty if
+/// all vectors are right or all are wrong.
 std::optional<double> area_under_curve(const Found& found) {
   std::vector<std::size_t> order(found.quality.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -114,7 +116,7 @@ std::optional<double> area_under_curve(const Found& found) {
   return right_ones > 0 && wrong > 0 ? std::optional(1 - above / (right_ones * wrong)) : std::nullopt;
 }
 
-/// Shares of the vectors that are right, are trusted, and are right among those that are trusted.
+/// Shares of the vectors: right ones, those of quality >= `trusted_quality`, and the right ones among the latter.
 struct Shares {
   double right, trusted, right_among_trusted;
 };
@@ -169,7 +171,7 @@ void measure(const Ground& ground, const View& view, Table& table) {
   }
 }
 
-/// Points as a cloud where none is dropped or joined to another.
+/// Measures points as a cloud, if no point is removed or merged.
 void measure_points(const Ground& ground, std::string name, std::span<const Vec3> points,
                     const std::vector<exact::MeshPoint>& on_ground, Table& table) {
   const auto cloud = pointcloud::PointCloudSurface::build(points);
@@ -177,7 +179,7 @@ void measure_points(const Ground& ground, std::string name, std::span<const Vec3
   measure(ground, {std::move(name), cloud, on_ground, [](Index k) { return Row(k); }}, table);
 }
 
-/// Noise moves points along the surface, too: what is true of them is so of the nearest point of the mesh.
+/// Noise also moves points along the surface, so the exact values are those of the nearest point of the mesh.
 void measure_noisy_points(const Ground& ground, const Surface& surface, Table& table) {
   std::mt19937_64 random(7);
   std::normal_distribution<double> off(0, noise * surface.mean_edge());
@@ -202,7 +204,7 @@ void measure(const Surface& surface, Table& table) {
   measure_noisy_points(ground, surface, table);
 }
 
-/// Refined, and as polygons. Exact maps run over the triangles of the refinement.
+/// Measures a polygon mesh, refined and as polygons. Exact maps use the triangles of the refinement.
 void measure(const NamedPolygons& mesh, Table& table) {
   using polymesh::Discretization;
   const auto build = [&](Discretization how) {
@@ -250,8 +252,7 @@ Table trust(const Settings& settings) {
   };
   table.seen = fmt::format(
       "95th percentile of the vectors' relative error, median over meshes: polar {:.2g} on triangles and {:.2g} on "
-      "their vertices "
-      "as points, heat {:.2g} and {:.2g}.",
+      "their vertices as points, heat {:.2g} and {:.2g}.",
       median("triangles", "polar"), median("points", "polar"), median("triangles", "heat"), median("points", "heat"));
   return table;
 }

@@ -1,4 +1,4 @@
-// Fig. 8: how far the localized variant is from the adaptive one.
+// Fig. 8: the difference between the localized and the adaptive variant.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -52,8 +52,8 @@ Table variants(const Settings& settings) {
   measure(Surface("torus", torus(n)), table);
   for_user_surfaces(settings, 200000, [&](const Surface& surface) { measure(surface, table); });
   table.seen = fmt::format(
-      "Median differences, relative to the largest distance: up to {:.2g} where the map is trusted (quality above one "
-      "half), up to {:.2g} elsewhere.",
+      "Median differences, relative to the largest distance: up to {:.2g} where the quality is above 0.5, up to {:.2g} "
+      "elsewhere.",
       table.largest("median difference, trusted"), table.largest("median difference"));
   return table;
 }

@@ -1,4 +1,4 @@
-// From geometry to graph, step by step: intrinsic flips, logs and transports, the local triangulations of clouds.
+// From geometry to graph, step by step: intrinsic flips, logarithms and transports, the local triangulations of clouds.
 #include <benchmark/benchmark.h>
 
 #include <memory>
@@ -24,7 +24,7 @@ void report_points(benchmark::State& state, double points) {
   state.counters["points/s"] = benchmark::Counter(points, benchmark::Counter::kIsIterationInvariantRate);
 }
 
-/// Bytes of the edges and masses of a graph, written once.
+/// Bytes of the edges and masses of a graph.
 double bytes(const ahm::CsrGraphData& g) {
   return 8.0 * static_cast<double>(g.row_begin.size() + g.weights.size() + g.logs.size() + g.transports.size() +
                                    g.masses.size()) +
@@ -63,7 +63,7 @@ void mesh_frames(benchmark::State& state) {
   report_points(state, mesh.vertex_count());
 }
 
-/// Bytes: what is written, the layouts and angles read.
+/// Bytes of traffic: the result, and the layouts and angles that are read.
 void mesh_logs_transports(benchmark::State& state) {
   const auto mesh = checked(ahm::bench::torus_mesh(static_cast<Index>(state.range(0))));
   ahm::trimesh::IntrinsicTriangulation triangulation(mesh, false, 1);
@@ -92,7 +92,7 @@ void polygon_logs_transports(benchmark::State& state) {
 
 // Clouds.
 
-/// Everything on the way from points to edges.
+/// All steps from points to edges.
 struct CloudSteps {
   ahm::pointcloud::CloudOptions options{.threads = 1};
   ahm::pointcloud::CloudDetails report;
@@ -138,7 +138,7 @@ void cloud_step(benchmark::State& state, void (CloudSteps::*step)()) {
   report_points(state, cloud.size());
 }
 
-/// Bytes: what is written, the edges, and a point and a normal at both ends of each.
+/// Bytes of traffic: the result, the edges, and a point and a normal at both ends of each edge.
 void cloud_logs_transports(benchmark::State& state) {
   CloudSteps& cloud = steps(static_cast<Index>(state.range(0)));
   const double seconds = run(state, [&] { benchmark::DoNotOptimize(cloud.join()); });

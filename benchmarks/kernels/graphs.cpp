@@ -5,7 +5,7 @@
 namespace ahm::bench {
 namespace {
 
-/// Keeps what was made last, since Google Benchmark calls every function several times.
+/// Keeps the last result, since Google Benchmark calls every function several times.
 template <class Made>
 class Last {
  public:

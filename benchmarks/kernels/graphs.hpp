@@ -1,5 +1,5 @@
 /// \file
-/// The shapes the kernels run on, each made once: the last of each kind is kept.
+/// The shapes of the kernels. The last one of each kind is kept.
 #pragma once
 
 #include "ahm/pointcloud/point_cloud_surface.hpp"
@@ -8,9 +8,9 @@
 
 namespace ahm::bench {
 
-/// A torus of about n vertices, jittered, its quads cut at random.
+/// A jittered torus of about n vertices, with quads cut at random.
 const Mesh& torus_mesh(Index n);
-/// The unit sphere, n points at random.
+/// n random points of the unit sphere.
 const std::vector<Vec3>& sphere_points(Index n);
 
 enum class Shape {
@@ -18,7 +18,7 @@ enum class Shape {
   cloud,  ///< sphere_points
 };
 
-/// Its graph, on one thread.
+/// The graph of a shape, built on one thread.
 const CsrGraph& graph_of(Shape shape, Index n);
 
 }  // namespace ahm::bench

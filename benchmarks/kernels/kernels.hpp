@@ -1,9 +1,9 @@
 /// \file
-/// The kernels one by one, on one thread: ahm-bench kernels [--benchmark_filter=REGEX ...].
+/// Single kernels on one thread: ahm-bench kernels [--benchmark_filter=REGEX ...].
 ///
-/// Times and rates are in CPU time, so that a busy machine distorts them less. Rates stand beside what the same thread
-/// can do: "of copy" is the share of a copy of memory as in STREAM, "of gemm" the share of the BLAS's matrix product,
-/// both measured right after the kernel. Where n is small enough for the caches, the share may be above 1.
+/// Times and rates use CPU time, so that a busy machine distorts them less. Rates are compared with the speed of the same
+/// thread, measured right after the kernel. "of copy" is the share of a copy of memory as in STREAM; "of gemm" is the share
+/// of the BLAS's matrix product. The share may exceed 1 where n is small enough for the caches.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
 /// \file
-/// The kernels beside what the machine can do on one thread.
+/// Compares kernels with the speed of the machine on one thread.
 #pragma once
 
 #include <benchmark/benchmark.h>

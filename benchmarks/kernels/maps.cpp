@@ -29,7 +29,7 @@ const ahm::LogMapSolver& solver_of(const ahm::TangentGraph& graph) {
   return *solver;
 }
 
-/// The solves of a map alone: A and B for the source, then A for two columns (adaptive) or B for one (localized).
+/// The solves of a map only: A and B for the source, then A for two columns (adaptive) or B for one (localized).
 void solves_alone(const ahm::HeatOperators& heat, Variant variant, std::vector<double>& X) {
   const auto n = static_cast<std::size_t>(heat.size());
   auto point = [&](std::size_t size) {
@@ -43,7 +43,7 @@ void solves_alone(const ahm::HeatOperators& heat, Variant variant, std::vector<d
   variant == Variant::adaptive ? heat.solve_scalar(X, 2) : heat.solve_vector(X, 1);
 }
 
-/// One further map on one thread. "outside solves": the share of right-hand sides, frames and quotients.
+/// One additional map on one thread. "outside solves" is the share of right-hand sides, frames and quotients.
 void map(benchmark::State& state, Shape shape, Variant variant) {
   const ahm::CsrGraph& graph = graph_for(state, shape);
   const ahm::LogMapSolver& solver = solver_of(graph);
@@ -56,7 +56,7 @@ void map(benchmark::State& state, Shape shape, Variant variant) {
   state.SetItemsProcessed(state.iterations() * graph.size());
 }
 
-/// A whole map by march, with nothing factored before.
+/// A whole map by march, without any factorization before.
 void march(benchmark::State& state, Shape shape) {
   const ahm::CsrGraph& graph = graph_for(state, shape);
   const ahm::LogMapSolver solver(graph, {.strategy = ahm::Strategy::march, .check_graph = false, .threads = 1});
@@ -68,8 +68,8 @@ void march(benchmark::State& state, Shape shape) {
   state.SetItemsProcessed(state.iterations() * graph.size());
 }
 
-/// Bytes: the graph but its weights and transports, coordinates and frames of each vertex and coordinates of neighbours.
-/// Uses all cores; CPU time is that of all.
+/// Bytes of traffic: the graph without its weights and transports, coordinates and frames of each vertex, and coordinates
+/// of its neighbors. Uses all cores; CPU time is the sum over them.
 void quality(benchmark::State& state, Shape shape) {
   const ahm::CsrGraph& graph = graph_for(state, shape);
   const ahm::LogMap map =

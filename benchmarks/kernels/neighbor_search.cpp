@@ -1,4 +1,4 @@
-// All k = 30 nearest neighbours of a random sphere by each search, points in random order: build and queries.
+// The 30 nearest neighbors of all points of a random sphere, in random order, by each search: build and queries.
 #include "ahm/pointcloud/neighbor_search.hpp"
 
 #include <benchmark/benchmark.h>

@@ -22,7 +22,7 @@ double bytes(const SparseUpper& matrix) {
   return 8.0 * static_cast<double>(matrix.column_begin.size() + matrix.rows.size() + matrix.values.size());
 }
 
-/// A and B in one pass. Bytes: the rows of the graph but its logs, and both matrices.
+/// Assembles A and B in one pass. Bytes of traffic: the rows of the graph without logarithms, and both matrices.
 void assemble(benchmark::State& state, Shape shape) {
   const ahm::CsrGraph& graph = graph_of(shape, static_cast<ahm::Index>(state.range(0)));
   const double seconds = run(state, [&] { benchmark::DoNotOptimize(operators(graph)); });
@@ -42,7 +42,7 @@ void analyze(benchmark::State& state, Shape shape, Ordering ordering) {
   state.SetItemsProcessed(state.iterations() * state.range(0));
 }
 
-/// Numbers into the analyzed pattern; the check of the residual is part of it.
+/// Numerical factorization of the analyzed pattern, including the check of the residual.
 void factorize(benchmark::State& state, Shape shape, Ordering ordering, bool scalar) {
   ahm::AssembledOperators matrices = operators(graph_of(shape, static_cast<ahm::Index>(state.range(0))));
   const ahm::SymbolicCholesky symbolic(matrices.A, ordering);

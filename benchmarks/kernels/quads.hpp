@@ -17,12 +17,12 @@ struct Quads {
   std::vector<Index> corners;
 };
 
-/// Glues faces 2 f and 2 f + 1 of a mesh together, the halves of a quad as `torus` makes them.
+/// Joins faces 2 f and 2 f + 1 of a mesh, which `torus` makes as the halves of a quad.
 inline Quads quads_of(const Mesh& mesh) {
   Quads quads{mesh.positions};
   for (std::size_t f = 0; f + 1 < mesh.faces.size(); f += 2) {
     const auto &a = mesh.faces[f], &b = mesh.faces[f + 1];
-    if (a[2] == b[1])  // cut from corner 0 to corner 2, else from 1 to 3
+    if (a[2] == b[1])  // cut from corner 0 to corner 2, otherwise from 1 to 3
       quads.corners.insert(quads.corners.end(), {a[0], a[1], a[2], b[2]});
     else
       quads.corners.insert(quads.corners.end(), {a[0], a[1], b[1], a[2]});

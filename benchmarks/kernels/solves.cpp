@@ -34,8 +34,8 @@ const ahm::CholeskyFactor& factor_of(const ahm::TangentGraph& graph, Shape shape
   return kept->factor;
 }
 
-/// Bytes: the factor forwards and backwards once, the right-hand sides in and out. The same factor serves a dense
-/// right-hand side and that of one source (`point`), where the way down skips what stays zero.
+/// Bytes of traffic: the factor once forwards and once backwards, the right-hand sides in and out. `point` is the
+/// right-hand side of one source, where the forward solve skips entries that stay zero; otherwise it is dense.
 void solve(benchmark::State& state, Shape shape, bool scalar, bool point) {
   const auto n = static_cast<Index>(state.range(0)), columns = static_cast<Index>(state.range(1));
   const ahm::CsrGraph& graph = graph_of(shape, n);

@@ -1,4 +1,4 @@
-// The affine heat method of this library; its distance is the paper's, the length of phi.
+// The affine heat method of this library. Its distance is that of the paper: the length of phi.
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/util/small_math.hpp"
 #include "methods/heat_fields.hpp"

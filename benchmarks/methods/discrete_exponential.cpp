@@ -1,4 +1,4 @@
-// DEM: Dijkstra's algorithm that adds up edge vectors, each turned to the frame of the source.
+// DEM: Dijkstra's algorithm sums edge vectors, each turned to the frame of the source.
 #include <Eigen/Dense>
 #include <Eigen/Geometry>
 #include <cmath>
@@ -19,7 +19,7 @@ class DiscreteExponential final : public Baseline {
       : graph_(graph), options_(options) {
     if (options.turn == FrameTurn::in_space && (graph.dimension() != 2 || graph.size() == 0 || !graph.frame(0)))
       throw InvalidArgument(
-          "discrete_exponential: the graph is no surface in space with known frames; turn along the path instead");
+          "discrete_exponential: the graph is not a surface in space with frames; use FrameTurn::along_path instead");
   }
 
   std::string_view name() const noexcept override { return "DEM"; }
@@ -34,8 +34,8 @@ using Row3 = Eigen::RowVector3d;
 
 Row3 row(const Vec3& v) { return {v[0], v[1], v[2]}; }
 
-/// Components in frame `from` -> components in frame `to`, 2 x 2, after the least rotation that takes the normal of the
-/// one to that of the other. Opposite normals: half a turn about the x axis of `to`.
+/// 2 x 2 matrix from components in frame `from` to components in frame `to`, after the smallest rotation from one normal to
+/// the other. Opposite normals: half a turn about the x axis of `to`.
 Eigen::Matrix2d turn_in_space(const Frame& from, const Frame& to) {
   const Eigen::Vector3d m = row(from.normal), n = row(to.normal);
   const double cosine = m.dot(n);
@@ -80,7 +80,7 @@ class Propagation {
     }
   }
 
-  /// u_i = u_q - Q_q R_iq e_iq for the neighbour q that the shortest path comes from, or averaged over all settled q.
+  /// u_i = u_q - Q_q R_iq e_iq for the predecessor q on the shortest path, or averaged over all settled neighbors q.
   void place(Index i, const Star& star) {
     double shortest = HUGE_VAL, weights = 0;
     std::size_t last_edge = 0;
@@ -99,7 +99,7 @@ class Propagation {
           turn_in_space(*graph_.frame(i), source_frame_);
       return;
     }
-    // Q_i = Q_q R_iq, row by row: R_qi takes the rows, which are vectors at q, to i.
+    // Q_i = Q_q R_iq, row by row: R_qi transports the rows, which are vectors at q, to i.
     for (std::size_t a = 0; a < d_; ++a)
       carry_here(graph_, star, last_edge, turn(star.neighbors[last_edge], a), turn(i, a));
   }
@@ -115,14 +115,14 @@ class Propagation {
   }
 
   double* at(Index i) { return &coordinates_[static_cast<std::size_t>(i) * d_]; }
-  /// Row a of Q_i, which takes components in frame i to the source's frame.
+  /// Row a of Q_i, the matrix from components in frame i to the source's frame.
   double* turn(Index i, std::size_t a) { return &turns_[(static_cast<std::size_t>(i) * d_ + a) * d_]; }
 
   const TangentGraph& graph_;
   DiscreteExponentialOptions options_;
   Frame source_frame_{};
   std::size_t d_;
-  std::vector<double> path_;  ///< length of the shortest path of edges found so far
+  std::vector<double> path_;  ///< length of the shortest edge path found so far
   std::vector<bool> settled_;
   std::vector<double> coordinates_, turns_, vector_;
   ShortestPaths<double, std::vector<double>> paths_{path_, HUGE_VAL};

@@ -59,7 +59,7 @@ std::vector<double> EdgeIntegration::integrate(std::span<const double> field, In
       for (std::size_t a = 0; a < d; ++a)
         increment +=
             (share_i * field[static_cast<std::size_t>(i) * d + a] + (1 - share_i) * carried[a]) * star.log(e)[a];
-      // Every edge is seen from both of its ends, whose logs may differ; each counts half. The sum of b stays zero.
+      // An edge occurs at both of its ends, where its logarithms may differ; each counts half. The sum of b remains zero.
       b[i] -= 0.5 * star.weights[e] * increment;
       b[j] += 0.5 * star.weights[e] * increment;
     }

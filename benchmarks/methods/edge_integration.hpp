@@ -1,6 +1,6 @@
 /// \file
-/// From a vector field to the function whose gradient it is nearest to, over the edges of a graph: the last step of
-/// every heat method for distance.
+/// The function whose gradient is nearest to a vector field, over the edges of a graph: the last step of every heat method
+/// for distances.
 ///
 /// \code
 /// const ahm::methods::EdgeIntegration integration(graph);           // factors the Laplacian
@@ -17,16 +17,16 @@
 
 namespace ahm::methods {
 
-/// Minimizes sum_ij w_ij (f_j - f_i - <X, e_ij>)^2, where X along the edge is the mean of its two ends. Exact on a flat
-/// graph for the gradients of quadratic functions, whatever the weights.
+/// Minimizes sum_ij w_ij (f_j - f_i - <X, e_ij>)^2, where X on an edge is the mean over its ends. On a flat graph it is
+/// exact for gradients of quadratic functions, for any weights.
 class EdgeIntegration {
  public:
-  /// @throws NotPositiveDefinite when the Laplacian is not positive semi-definite
+  /// @throws NotPositiveDefinite (a Laplacian that is not positive semi-definite)
   explicit EdgeIntegration(const TangentGraph& graph);
 
-  /// @param field  n x d, in the frame of each vertex, of no unit
-  /// @param pole   a vertex whose vector is not used: its edges take the vector of their other end; -1: none
-  /// @return f in graph units, up to a constant in every component
+  /// @param field  n x d, in the frame of each vertex, without unit
+  /// @param pole   a vertex whose vector is ignored: its edges use the vector of their other end; -1: none
+  /// @return f in graph units, up to a constant per component
   std::vector<double> integrate(std::span<const double> field, Index pole = -1) const;
 
  private:

@@ -50,7 +50,7 @@ class ExactDistance final : public Baseline {
     geodesics.add_source_point(cgal_vertex(source));
     Result result;
     for (const auto vertex : surface_.vertices()) {
-      // Negative: no path.
+      // negative: there is no path
       const double distance =
           surface_.is_isolated(vertex) ? -1.0 : geodesics.shortest_distance_to_source_points(vertex).first;
       result.distance.push_back(distance >= 0 ? distance : nan);

@@ -88,7 +88,7 @@ void StarGradient::factor(const Star& star, const Use& use) {
     if (const double square = log.squaredNorm(); use(e) && square > 0)
       normal_.noalias() += log * log.transpose() / square;
   }
-  // Directions that no edge has get no slope.
+  // Directions without an edge get zero slope.
   normal_.diagonal().array() += 1e-13 * normal_.trace() + std::numeric_limits<double>::min();
   factors_.compute(normal_);
 }

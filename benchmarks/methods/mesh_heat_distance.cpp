@@ -1,4 +1,4 @@
-// HM on the faces of a triangle mesh, Algorithm 1 of CWW13 with its Sec. 3.2.1.
+// HM on the faces of a triangle mesh: Algorithm 1 of [CWW13] with its Sec. 3.2.1.
 #include <array>
 #include <cmath>
 #include <string>
@@ -14,11 +14,11 @@ namespace {
 
 using Sparse = Eigen::SparseMatrix<double>;
 
-/// A face laid out in the plane, in graph units.
+/// A face in the plane, in graph units.
 struct Face {
   Triangle vertices;
   double area;
-  std::array<Eigen::Vector2d, 3> gradients;  ///< of the three hat functions
+  std::array<Eigen::Vector2d, 3> gradients;  ///< gradients of the three hat functions
 };
 
 Face lay_out(const trimesh::TriangleMesh& mesh, Index f) {
@@ -50,7 +50,7 @@ double mean_edge_length(const trimesh::TriangleMesh& mesh) {
   return sum / count;
 }
 
-/// M + t L with the cotan Laplacian L and lumped masses M, of all faces.
+/// M + t L over all faces, with the cotan Laplacian L and lumped masses M.
 Sparse heat_operator(const std::vector<Face>& faces, Index n, double mass, double t) {
   std::vector<Eigen::Triplet<double>> entries;
   entries.reserve(9 * faces.size());
@@ -65,8 +65,8 @@ Sparse heat_operator(const std::vector<Face>& faces, Index n, double mass, doubl
   return A;
 }
 
-/// L with a little mass, which makes it definite in every component. Since the divergence of a field sums to zero, it
-/// changes distances by no more than 1e-12 (diameter / h)^2 of their size.
+/// L with a small mass, which makes it definite in every component. The divergence of a field sums to zero, so distances
+/// change by at most 1e-12 (diameter / h)^2 of their size.
 Sparse poisson_operator(const std::vector<Face>& faces, Index n, double h) {
   return heat_operator(faces, n, 1e-12 / (h * h), 1.0);
 }

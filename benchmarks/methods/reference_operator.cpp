@@ -1,4 +1,4 @@
-// The paper's operator as the tests assemble it, testing/src/reference_operator.cpp.
+// The paper's operator as assembled for the tests, libahm/conformance/src/reference_operator.cpp.
 #include "ahm/conformance/reference_operator.hpp"
 
 #include <Eigen/Core>

@@ -1,4 +1,4 @@
-// SHM: transport the normals of the source, make them one long, integrate.
+// SHM: transports the normals of the source, normalizes them, and integrates.
 #include "methods/signed_heat.hpp"
 
 #include <algorithm>
@@ -12,14 +12,14 @@ namespace {
 
 void check_curve(const Source& curve, const TangentGraph& graph) {
   if (graph.dimension() != 2 || curve.dimension() != 2 || curve.vertices().empty())
-    throw InvalidArgument("'curve' must be samples with axes on a graph of dimension 2; make it with stroke_source");
+    throw InvalidArgument("'curve' must have samples with axes on a graph of dimension 2; use stroke_source");
   for (const auto [i] : curve.vertices())
     if (i < 0 || i >= graph.size())
       throw InvalidArgument("'curve': vertex " + std::to_string(i) + " must be in [0, " + std::to_string(graph.size()) +
                             ")");
 }
 
-/// Vertices of a vector field that heat has reached.
+/// Whether heat has reached a vertex of the field.
 bool arrived(std::span<const double> unit_field, std::size_t vertex, std::size_t d) {
   const auto vector = unit_field.subspan(vertex * d, d);
   return std::any_of(vector.begin(), vector.end(), [](double x) { return x != 0; });
@@ -33,13 +33,13 @@ SignedHeat::SignedHeat(const TangentGraph& graph, double t_coef)
 Result SignedHeat::solve(Index source) const {
   check_source(source, graph_.size());
   const auto d = static_cast<std::size_t>(graph_.dimension());
-  // I. A point's normals are those of a small circle about it.
+  // I. The normals of a point are those of a small circle around it.
   std::vector<double> X(static_cast<std::size_t>(graph_.size()) * d, 0.0);
   add_outward_circle(graph_, source, X);
   heat_.solve_vector(X, 1);
-  // II.
+  // II. Normalize.
   normalize(X, graph_.dimension());
-  // III.
+  // III. Integrate.
   return {{}, distances_from(integration_.integrate(X, source), source, graph_.length_unit(), [&](std::size_t i) {
             return static_cast<Index>(i) == source || arrived(X, i, d);
           })};
@@ -47,18 +47,18 @@ Result SignedHeat::solve(Index source) const {
 
 std::vector<double> SignedHeat::signed_distance(const Source& curve) const {
   check_curve(curve, graph_);
-  // I. Normals with their share of the curve's length.
+  // I. Normals, weighted by their share of the curve's length.
   std::vector<double> X(static_cast<std::size_t>(graph_.size()) * 2, 0.0);
   const double most = *std::max_element(curve.weights().begin(), curve.weights().end());
-  if (!(most > 0)) throw InvalidArgument("'curve': every weight is 0; give one sample a positive weight at the least");
+  if (!(most > 0)) throw InvalidArgument("'curve': every weight is 0; at least one sample needs a positive weight");
   for (std::size_t k = 0; k < curve.vertices().size(); ++k)
     for (std::size_t a : {0, 1})
       X[static_cast<std::size_t>(curve.vertices()[k].index) * 2 + a] +=
           source_heat * (curve.weights()[k] / most) * curve.axes()[4 * k + 2 * a + 1];
   heat_.solve_vector(X, 1);
-  // II.
+  // II. Normalize.
   normalize(X, 2);
-  // III. Zero on average over the curve.
+  // III. Integrate; zero on average over the curve.
   std::vector<double> f = integration_.integrate(X);
   double mean = 0, weights = 0;
   for (std::size_t k = 0; k < curve.vertices().size(); ++k) {

@@ -15,7 +15,7 @@
 
 namespace ahm::methods {
 
-/// Factors in its constructor. `solve` gives the unsigned distance to a vertex: a point has no side.
+/// Factors in its constructor. `solve` computes the unsigned distance to a vertex: a point has no sides.
 class SignedHeat final : public Baseline {
  public:
   /// @throws as `HeatOperators`; NotPositiveDefinite (weights)
@@ -25,10 +25,10 @@ class SignedHeat final : public Baseline {
   Result solve(Index source) const override;
 
   /// Signed distance to a curve, d = 2.
-  /// @param curve  samples with quadrature weights whose u axes run along the curve, as `stroke_source` makes them;
-  ///               several strokes added to one source are one broken curve
+  /// @param curve  samples with quadrature weights whose u axes point along the curve, as from `stroke_source`; several
+  /// strokes added to one source are one broken curve
   /// @return n numbers, world units, > 0 on the side of the v axes; zero on average over the curve
-  /// @throws InvalidArgument when the source is not a curve in d = 2 or does not fit the graph
+  /// @throws InvalidArgument (a source that is not a curve in d = 2, or that does not match the graph)
   std::vector<double> signed_distance(const Source& curve) const;
 
  private:

@@ -1,4 +1,4 @@
-// SEM: the direction in which the heat of a vertex arrives at the source, the distance of the heat method.
+// SEM: the direction is that in which the heat of a vertex arrives at the source, the distance that of the heat method.
 #include <cmath>
 
 #include "methods/method.hpp"
@@ -28,7 +28,7 @@ std::vector<double> SmoothedExponential::arrival(Index source) const {
   const auto n = static_cast<std::size_t>(graph_.size());
   const Star star = graph_.star(source);
   const Eigen::MatrixXd coefficients = StarGradient(star.dimension).coefficients(star);
-  // k(j, i) = k(i, j) and the gradient is linear, so the heat of the star's vertices is added up before it flows:
+  // k(j, i) = k(i, j) and the gradient is linear, so the sources at the star's vertices are summed before one diffusion:
   // sum_j c_j (k(j, i) - k(p, i)).
   std::vector<double> X(n * static_cast<std::size_t>(star.dimension), 0.0);
   for (int a = 0; a < star.dimension; ++a)

@@ -1,5 +1,5 @@
 /// \file
-/// A sparse symmetric positive definite matrix, factored by CHOLMOD, for the systems `HeatOperators` does not hold.
+/// A sparse symmetric positive definite matrix factored by CHOLMOD, for systems that are not in `HeatOperators`.
 #pragma once
 
 #include <Eigen/CholmodSupport>
@@ -10,7 +10,7 @@
 
 namespace ahm::methods {
 
-/// One thread at a time: CHOLMOD's workspace is shared.
+/// For one thread at a time: solves share the workspace of CHOLMOD.
 class SparseCholesky {
  public:
   /// @param matrix  its lower triangle is used

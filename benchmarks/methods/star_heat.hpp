@@ -1,5 +1,5 @@
 /// \file
-/// The second and third step of the heat method on a graph, which HM and SEM share.
+/// The second and third step of the heat method on a graph, shared by HM and SEM.
 #pragma once
 
 #include <vector>
@@ -13,7 +13,7 @@ class StarHeat {
  public:
   explicit StarHeat(const TangentGraph& graph);
 
-  /// Distances in world units from the heat of a vertex; NaN where there is none.
+  /// Distances in world units from the heat of a vertex; NaN where no heat arrives.
   std::vector<double> from_heat(std::vector<double> lambda, Index source) const;
 
  private:

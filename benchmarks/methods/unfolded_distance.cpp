@@ -1,4 +1,4 @@
-// Distances unfolded across triangles: `LogMap::distance` of this library on meshes.
+// Distances unfolded across triangles, as in `LogMap::distance` of this library on meshes.
 #include "ahm/maps/wavefront.hpp"
 #include "methods/heat_fields.hpp"
 #include "methods/method.hpp"

@@ -1,4 +1,4 @@
-// VHM_log: the direction from two transported fields, a constant and a radial one, the distance by integrating the
+// VHM_log: the direction from two transported fields, a constant and a radial one; the distance as the integral of the
 // radial one.
 #include <Eigen/Dense>
 #include <cmath>
@@ -19,11 +19,12 @@ class VectorHeatLog final : public Baseline {
   Result solve(Index source) const override;
 
  private:
-  /// d = 2 with rotations turns the second axis with the first.
+  /// Number of transported axes: for d = 2 with rotations the second axis follows from the first.
   int axes() const { return graph_.transport_kind() == TransportKind::rotation2 ? 1 : graph_.dimension(); }
-  /// The outward field, then the axes of the source's frame, each carried to all vertices: column major, n d numbers each.
+  /// The outward field, then the axes of the source's frame, each transported to all vertices: column major, n d numbers
+  /// each.
   std::vector<double> fields(Index source) const;
-  /// The orthonormal frame nearest to the carried axes; false when no heat arrived.
+  /// The orthonormal frame nearest to the transported axes; false where no heat arrived.
   bool frame(std::span<const double> axes, Index vertex, Eigen::MatrixXd& U) const;
 
   const TangentGraph& graph_;
@@ -67,14 +68,14 @@ Result VectorHeatLog::solve(Index source) const {
   std::vector<double> fields = this->fields(source);
   const std::span radial = std::span(fields).first(nd);
 
-  // R: the outward field, made one long; of no direction at the source itself.
+  // R: the normalized outward field; zero at the source itself.
   normalize(radial, d);
   std::fill_n(&radial[static_cast<std::size_t>(source) * static_cast<std::size_t>(d)], d, 0.0);
   // Laplacian r = div R.
   const std::vector<double> r = integration_.integrate(radial, options_.radial_at_source ? source : -1);
   const double zero = r[source];
 
-  // phi = r (R in the carried frame).
+  // phi = r (R in the transported frame).
   Result result{std::vector<double>(nd, nan), std::vector<double>(r.size(), nan)};
   Eigen::MatrixXd U(d, d);
   for (Index i = 0; i < graph_.size(); ++i) {

@@ -1,5 +1,5 @@
-// The paper's systems as they stand, solved by LU as the public implementations do, beside the elimination: the 3n x 3n operator is
-// not symmetric, that of the adaptive variant is another one for each source.
+// The paper's systems solved by LU, as in public implementations, compared with the elimination. The 3n x 3n operator is
+// not symmetric; that of the adaptive variant depends on the source.
 #include <dlfcn.h>
 #include <fmt/format.h>
 
@@ -24,16 +24,17 @@ using Complex = std::complex<double>;
 using Scalars = Eigen::SparseMatrix<double>;
 using Rotations = Eigen::SparseMatrix<Complex>;
 
-/// UMFPACK's factors, which look at their matrix again for each solve.
+/// UMFPACK's factors, which need their matrix in every solve.
 struct Lu {
   Scalars matrix;
   Eigen::UmfPackLU<Scalars> factors;
 };
 
-/// Factors as a user of the paper's equations would keep them: of the frames' operator by Cholesky, of the 3n x 3n operator by LU.
+/// The factors that a direct implementation of the paper's equations would keep: frames by Cholesky, the 3n x 3n operator
+/// by LU.
 class DirectSolver {
  public:
-  /// @param graph  of rotations, d = 2; must outlive the solver
+  /// @param graph  with rotations, d = 2; must outlive the solver
   explicit DirectSolver(const CsrGraph& graph)
       : graph_(graph), n_(graph.size()), tau_(square(graph.mean_edge_length())) {
     std::vector<Eigen::Triplet<Complex>> entries;
@@ -47,7 +48,7 @@ class DirectSolver {
     check(frames_.info());
   }
 
-  /// phi of a vertex source, in units of the graph.
+  /// phi from a vertex, in units of the graph.
   std::vector<Complex> solve(Index source, Variant variant) {
     Eigen::VectorXcd U = Eigen::VectorXcd::Zero(n_);
     U[source] = 1;
@@ -79,7 +80,7 @@ class DirectSolver {
     if (info != Eigen::Success) throw std::runtime_error("a direct factorization failed");
   }
 
-  /// `work(i, j, weight, transport from j to i, logarithm of j)`.
+  /// Calls work(i, j, weight, transport from j to i, logarithm of j) for every directed edge.
   template <class Work>
   void for_each_edge(const Work& work) const {
     for (Index i = 0; i < n_; ++i) {
@@ -123,7 +124,7 @@ class DirectSolver {
   std::optional<Lu> affine_, radial_;
 };
 
-/// Seconds of the first map and of a further one, and peak MB to the first.
+/// CPU seconds of the first map and of an additional one, and peak memory up to the first, MB.
 template <class Make, class Solve>
 std::vector<double> timed(const Make& make, const Solve& solve) {
   const double first = cpu_seconds_of([&] {
@@ -147,14 +148,15 @@ std::vector<double> by_elimination(Index n, Variant variant) {
                [&] { solver->solve(source, {.variant = variant, .threads = 1}); });
 }
 
-/// And how far the two maps differ, as a share of the longest vector.
+/// The numbers of `timed` for LU, and the largest difference of the two maps as a share of the longest vector.
 std::vector<double> directly(Index n, Variant variant) {
   const auto surface = icosphere_surface(n);
   const CsrGraph& graph = surface.graph();
   std::optional<DirectSolver> solver;
   std::vector<Complex> phi;
   const OneBlasThread one;
-  // CHOLMOD, which factors the frames, opens OpenMP regions, and a process that was forked has no threads for them.
+  // CHOLMOD, which factors the frames, uses OpenMP. A forked process has no OpenMP threads, so parallel regions are
+  // switched off.
   if (void* set = dlsym(RTLD_DEFAULT, "omp_set_max_active_levels")) reinterpret_cast<void (*)(int)>(set)(0);
   std::vector<double> numbers = timed([&] { solver.emplace(graph); }, [&] { phi = solver->solve(0, variant); });
   const LogMap map = LogMapSolver(graph, {.strategy = Strategy::global, .threads = 1})
@@ -182,7 +184,8 @@ Table direct(const Settings& settings) {
                  ours[2], lu[2], lu[2] / ours[2], lu[3]});
     }
   table.seen = fmt::format(
-      "By LU first maps take {:.0f} to {:.0f} times as long, further ones {:.0f} to {:.0f} times; maps differ by up to "
+      "By LU first maps take {:.0f} to {:.0f} times as long, additional ones {:.0f} to {:.0f} times; maps differ by up "
+      "to "
       "{:.0e}.",
       table.smallest("first, times"), table.largest("first, times"), table.smallest("further, times"),
       table.largest("further, times"), table.largest("apart"));

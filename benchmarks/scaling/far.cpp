@@ -1,4 +1,5 @@
-// Flat graphs far beyond the reach of one solve, by march, against the closed form: a tube of 40 vertices around, and a cube of voxels.
+// Flat graphs far beyond the reach of one solve, by march, compared with the closed form: a tube of 40 vertices around, and
+// a cube of voxels.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -42,7 +43,7 @@ std::vector<double> row(const Marched& marched, double distance, double on_line,
           elsewhere};
 }
 
-/// Relative errors beyond a hundredth of the way, at most from ring 100 on.
+/// Relative errors of the tube from ring `near` on: 1 % of its length, at most 100 rings.
 std::vector<double> tube(Index n, const Settings& settings) {
   const Index rings = std::max<Index>(n / around, 2), near = std::min<Index>(100, rings / 100 + 2);
   const CsrGraph graph(test::tube(rings, around));
@@ -60,7 +61,7 @@ std::vector<double> tube(Index n, const Settings& settings) {
   return row(marched, distance, on_line, elsewhere);
 }
 
-/// Largest errors over the diameter; those of the vectors stand under both lengths.
+/// Largest errors of the cube over its diameter. Errors of vectors are in both columns of lengths.
 std::vector<double> cube(Index n, const Settings& settings) {
   const auto side = static_cast<Index>(std::lround(std::cbrt(n)));
   const grid::GridGraph graph({.shape = {side, side, side}, .spacing = {1, 1, 1}});

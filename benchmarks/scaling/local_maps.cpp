@@ -1,4 +1,4 @@
-// Local maps of every vertex, and how far their margins must reach.
+// Local maps of every vertex, and the margin that they need.
 #include "ahm/maps/local_maps.hpp"
 
 #include <fmt/format.h>
@@ -16,7 +16,7 @@
 namespace ahm::bench {
 namespace {
 
-/// Largest differences to the maps of the whole graph, relative to the radius, over some sources.
+/// Largest differences between local maps and maps of the whole graph, relative to the radius, over some sources.
 struct Difference {
   double coordinates = 0, distances = 0;
 };
@@ -64,7 +64,7 @@ Table margins(const Settings& settings) {
     add_rows(torus_graph(n), "triangles");
     add_rows(pointcloud::PointCloudSurface::build(torus(n).positions), "points");
   }
-  table.seen = fmt::format("The boundary shows by at most {:.1g} of the radius with the default margin of 2.",
+  table.seen = fmt::format("With the default margin of 2 the boundary changes maps by at most {:.1g} of the radius.",
                            table.where("margin", "2").largest("difference / R"));
   return table;
 }

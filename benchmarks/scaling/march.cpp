@@ -1,4 +1,4 @@
-// One map by march and by a global solve: random spheres as clouds, icospheres as meshes.
+// One map by march and by a global solve, on random spheres as clouds and icospheres as meshes.
 #include <fmt/format.h>
 
 #include <optional>

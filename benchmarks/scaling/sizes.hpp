@@ -1,5 +1,5 @@
 /// \file
-/// Sizes of the scaling experiments, and a process of its own for each.
+/// Sizes of the scaling experiments, each measured in a process of its own.
 ///
 /// \code
 /// for (Index n : sizes(settings, 1000, {10000, 100000})) {
@@ -19,18 +19,18 @@
 
 namespace ahm::bench {
 
-/// What the user asked for; else `toy`, or `usual`.
+/// The sizes of the settings if there are any, otherwise `toy` or `usual`.
 inline std::vector<Index> sizes(const Settings& settings, Index toy, std::vector<Index> usual) {
   if (!settings.vertices.empty()) return settings.vertices;
   return settings.toy ? std::vector<Index>{toy} : usual;
 }
 
-/// The `count` numbers that `work` returns, found in a process of its own, so that its peak memory is that of this work.
-/// @throws std::runtime_error when there can be no process or the work fails
+/// The `count` numbers that `work` returns. It runs in a process of its own, so that the peak memory is that of this work.
+/// @throws std::runtime_error (no process, or the work fails)
 template <class Work>
 std::vector<double> in_own_process(std::size_t count, const Work& work) {
   int ends[2];
-  if (pipe(ends) != 0) throw std::runtime_error("no pipe for a measurement");
+  if (pipe(ends) != 0) throw std::runtime_error("cannot open a pipe for a measurement");
   const auto bytes = static_cast<ssize_t>(count * sizeof(double));
   const pid_t child = fork();
   if (child == 0) {

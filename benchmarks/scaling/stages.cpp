@@ -1,4 +1,4 @@
-// The stages of a log map, from a file to a file: processor time of each, and the least that the machine could need for it.
+// The stages of a log map from file to file: processor time of each, and a lower bound of the time on this machine.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -23,17 +23,17 @@
 namespace ahm::bench {
 namespace {
 
-// Beyond bytes and operations, no stage is charged: the least counts what is read and written once, at the speed of a copy,
-// and the operations of the factors at the speed of dgemm and zgemm.
+// The lower bound counts bytes that are read and written once, at the speed of a copy, and the operations of the
+// factorizations at the speed of dgemm and zgemm. All else is free.
 constexpr std::array stages{"read",     "graph",     "assemble",         "order and analyze", "factor A",
                             "factor B", "first map", "further adaptive", "further localized", "write"};
 
-/// Of one stage: processor time, and the least that its bytes or operations take.
+/// Processor time of a stage, and the lower bound from its bytes or operations.
 struct Cost {
   double seconds, least;
 };
 
-/// Median of five runs, of three where one takes longer than a second, of one beyond ten.
+/// Median of five runs, or of three if a run takes longer than 1 s; a single run if it takes longer than 10 s.
 template <class Work>
 double usual_seconds(const Work& work) {
   std::vector<double> times{cpu_seconds_of(work)};
@@ -55,7 +55,7 @@ double bytes(const CsrGraphData& g) {
          bytes(g.masses) + bytes(g.frames);
 }
 
-/// What a surface is built from, and its file.
+/// The input of a surface, as arrays.
 struct MeshInput {
   std::vector<Vec3> points;
   std::vector<Triangle> faces;
@@ -80,18 +80,18 @@ struct CloudInput {
 
 double file_bytes(const std::filesystem::path& path) { return static_cast<double>(std::filesystem::file_size(path)); }
 
-/// Of one thread, bytes and operations per second.
+/// Speeds of one thread: bytes of a copy and operations per second.
 struct Speeds {
   double copy, dgemm, zgemm;
 };
 
-/// In a process of its own, whose arrays do not count as memory of the stages.
+/// Measured in a process of its own, so that its arrays do not add to the memory of the stages.
 Speeds measured_speeds() {
   const auto all = in_own_process(3, [] { return std::vector{copy_bandwidth(), gemm_speed(false), gemm_speed(true)}; });
   return {all[0], all[1], all[2]};
 }
 
-/// Memory from points and faces to the first map.
+/// Peak memory from points and faces to the first map, MB.
 template <class Input>
 double peak_to_first_map(Index n) {
   const Input input(n);
@@ -101,7 +101,7 @@ double peak_to_first_map(Index n) {
   return peak_megabytes();
 }
 
-/// n, then seconds and least seconds of each stage.
+/// n, then processor time and lower bound of each stage, seconds.
 template <class Input>
 std::vector<double> measure(Index n, const Speeds& speeds) {
   const auto [copy, dgemm, zgemm] = speeds;
@@ -148,7 +148,7 @@ std::vector<double> measure(Index n, const Speeds& speeds) {
     }
   }
 
-  // Each map goes down and up both factors at least once.
+  // Each map reads both factors at least once forwards and once backwards.
   const double solves = 2 * factor_bytes / copy;
   const LogMapSolver solver(graph, {.strategy = Strategy::global, .threads = 1});
   const Source source = surface.source(Row(0)).source;
@@ -188,9 +188,8 @@ Table stages_of_a_map(const Settings& settings) {
   }
   const auto slowest = [&](const char* stage) { return table.where("stage", stage).largest("cpu s"); };
   table.seen = fmt::format(
-      "{:.0f} vertices take {:.2g} s for the graph, {:.2g} s for both factors and {:.2g} s for each further map, of "
-      "one "
-      "thread.",
+      "{:.0f} vertices take {:.2g} s for the graph, {:.2g} s for both factors and {:.2g} s for each additional map, on "
+      "one thread.",
       table.largest("vertices"), slowest("graph"), slowest("factor A") + slowest("factor B"),
       slowest("further adaptive"));
   return table;

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Submits the steps of ahm-tiles build to SLURM, one job per tile and step. Never run by SLURM; the order was tested with a shell.
+# Submits the steps of ahm-tiles build to SLURM, one job per tile and step. Not tested with SLURM; the order was tested in a shell.
 #   build_tiles.sh TILES_FOLDER NUMBER_OF_TILES     (ahm-tiles info prints the number)
 after=""
 for step in sort index planes measure cover mollify edges orient graph finish; do

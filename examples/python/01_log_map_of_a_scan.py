@@ -1,4 +1,4 @@
-"""The log map of a scan: rings of equal distance, sectors of equal direction, drawn with matplotlib.
+"""The log map of a scan, drawn with matplotlib: rings of equal distance and sectors of equal direction.
 
     python3 01_log_map_of_a_scan.py [SCAN [ROW]] [--size N] [--save PICTURE.png]
 """
@@ -11,7 +11,7 @@ import ahm
 
 
 def bumpy_scan(size):
-    """`size` points of a surface like a potato."""
+    """`size` points of a bumpy, potato-shaped surface."""
     i = np.arange(size) + 0.5
     z, turn = 1 - 2 * i / size, np.pi * (1 + 5**0.5) * i
     ball = np.stack([np.sqrt(1 - z * z) * np.cos(turn), np.sqrt(1 - z * z) * np.sin(turn), z], axis=1)
@@ -29,11 +29,12 @@ def draw(cloud, m, file):
     ring = np.floor(8 * m.distance / np.nanmax(m.distance))
     sector = np.floor(6 * (m.angle + np.pi) / np.pi)
     color = (ring + sector) % 2 + 2 * (m.quality < 0.5)
-    front = np.einsum("ij,j->i", cloud.normals, m.source.axes[2]) > 0  # normals of a cloud have no common side
+    front = np.einsum("ij,j->i", cloud.normals, m.source.axes[2]) > 0  # normals of a cloud are not oriented
+                                                                       # consistently
     seen = m.distance < 0.5 * np.nanmax(m.distance)
     u, v = ((cloud.points - m.source.position) @ m.source.axes[:2].T).T
     space.scatter(u[seen], v[seen], c=color[seen], s=2, cmap="viridis")
-    space.set_title("seen from above the source")
+    space.set_title("from above the source")
     plane.scatter(*m.uv.T, c=color, s=2, cmap="viridis")
     plane.set_title("logarithmic map")
     for axes in (space, plane):
@@ -53,7 +54,7 @@ def main():
     cloud = ahm.read(options.scan) if options.scan else ahm.PointCloud(bumpy_scan(options.size))
     m = ahm.log_map(cloud, options.row)
     print(m)
-    print(f"farthest point: {np.nanmax(m.distance):.4f} away; {100 * np.mean(m.quality > 0.5):.0f} % to be trusted")
+    print(f"farthest point: {np.nanmax(m.distance):.4f} away; {100 * np.mean(m.quality > 0.5):.0f} % of the map is reliable")
     if options.save:
         draw(cloud, m, options.save)
 

@@ -1,7 +1,7 @@
-"""Geodesic convolution in plain numpy: features of every point's neighbourhood, in its own tangent frame, by local maps.
+"""Geodesic convolution in plain numpy: features of every point's neighborhood, in its own tangent frame, from local maps.
 
-What a learning pipeline on surfaces does: a kernel given on a polar grid of bins, filled from the neighbours' signals. The same
-as a loop over the points, and ten times faster as one sum over all entries.
+As in learning pipelines on surfaces, a kernel on a polar grid of bins is applied to the signals of the neighbors. A loop over
+the points and one sum over all entries give the same result; the sum is ten times faster.
 
     python3 02_geodesic_convolution.py [--level N]
 """
@@ -44,7 +44,7 @@ def features(maps, signal, bins):
 
 
 def rotation_invariant(features_of_bins):
-    """The largest response over all turns of a kernel, since the frame of a point is arbitrary."""
+    """The largest response over all rotations of a kernel, since the frame of a point is arbitrary."""
     kernel = np.outer(np.ones(RINGS), np.cos(2 * np.pi * np.arange(SECTORS) / SECTORS))
     grid = features_of_bins.reshape(-1, RINGS, SECTORS)
     return np.max([np.einsum("nrs,rs->n", grid, np.roll(kernel, k, axis=1)) for k in range(SECTORS)], axis=0)
@@ -66,7 +66,7 @@ def main():
     slow = features_by_loop(maps, signal, bins)
     end = time.perf_counter()
     assert np.allclose(fast, slow)
-    print(f"{maps}: {middle - start:.3f} s at once, {end - middle:.3f} s by a loop")
+    print(f"{maps}: {middle - start:.3f} s by one sum, {end - middle:.3f} s by a loop")
     # The height of a sphere changes fastest at its equator and not at its poles.
     response = rotation_invariant(fast)
     equator, pole = np.argmin(np.abs(signal)), np.argmax(signal)

@@ -1,4 +1,4 @@
-"""The Karcher mean of landmarks on a folded, brain-like surface, and why the mean in space will not do.
+"""The Karcher mean of landmarks on a folded, brain-like surface. The mean in space does not lie on the surface.
 
     python3 03_karcher_mean_of_landmarks.py [--level N]
 """
@@ -25,7 +25,7 @@ def main():
     solver = ahm.LogMapSolver(brain)
     rng = np.random.default_rng(3)
     near_top = np.flatnonzero(brain.points[:, 2] > 0.7)
-    subjects = rng.choice(near_top, 12, replace=False)  # one landmark of each subject
+    subjects = rng.choice(near_top, 12, replace=False)  # one landmark per subject
 
     mean = ahm.karcher_mean(solver, subjects)
     median = ahm.geometric_median(solver, subjects)

@@ -1,4 +1,4 @@
-"""Texture transfer by two log maps: what lies at (u, v) on one surface goes to (u, v) on the other.
+"""Texture transfer by two log maps: the value at (u, v) on one surface is copied to (u, v) on the other.
 
     python3 04_texture_transfer.py [--level N]
 """
@@ -19,11 +19,11 @@ def main():
     ball = ahm.TriangleMesh(V, F)
     egg = ahm.TriangleMesh(V * [1, 1, 1.25], F)
     top_of_ball, top_of_egg = int(np.argmax(V[:, 2])), [0.0, 0.0, 1.25]
-    # Both maps start at the top, with the same direction as their u axis.
+    # Both maps start at the top, with the same u axis.
     giver = ahm.log_map(ball, top_of_ball, u_axis=[1, 0, 0], radius=1.2)
     taker = ahm.log_map(egg, top_of_egg, u_axis=[1, 0, 0], radius=1.0)
 
-    texture = np.cos(12 * giver.uv[:, 0]) * np.cos(12 * giver.uv[:, 1])  # of the ball's rows
+    texture = np.cos(12 * giver.uv[:, 0]) * np.cos(12 * giver.uv[:, 1])  # of the rows of the ball
     found = giver.inverse(taker.uv[taker.ok])
     values = np.einsum("kc,kc->k", found.barycentric, np.nan_to_num(texture)[found.triangle])
     painted = np.full(len(egg), np.nan)

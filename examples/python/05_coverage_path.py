@@ -1,4 +1,4 @@
-"""A tool path over a curved panel: parallel lines in log coordinates, back on the surface with normals and headings.
+"""A tool path over a curved panel: parallel lines in log coordinates, mapped to the surface with normals and headings.
 
     python3 05_coverage_path.py [--size N] [--save PATH.csv]
 """
@@ -27,9 +27,9 @@ def main():
     path = ahm.coverage(m, radius=0.8, spacing=0.05)
     length = sum(np.linalg.norm(np.diff(path.position[path.piece == k], axis=0), axis=1).sum() for k in range(path.pieces))
     bends = np.count_nonzero(path.between)
-    print(f"{len(path.uv) - bends} of {path.planned} points, and {bends} where the way bends, in {path.pieces} pieces, {length:.2f} long")
+    print(f"{len(path.uv) - bends} of {path.planned} points and {bends} bends between them, in {path.pieces} pieces, length {length:.2f}")
     apart = path.spacing[np.isfinite(path.spacing)]
-    print(f"lines are {apart.min():.4f} to {apart.max():.4f} apart; 0.05 was asked for")
+    print(f"lines are {apart.min():.4f} to {apart.max():.4f} apart; the requested spacing is 0.05")
     if options.save:
         np.savetxt(options.save, np.hstack([path.position, path.normal, path.heading, path.piece[:, None]]), delimiter=",",
                    header="x,y,z,nx,ny,nz,hx,hy,hz,piece", comments="")

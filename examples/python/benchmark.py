@@ -1,4 +1,4 @@
-"""What calls from Python cost: not a test, since it measures time. CPU seconds of the best of several calls.
+"""Cost of calls from Python: CPU seconds of the best of several calls. Not a test, since it measures time.
 
     PYTHONPATH=build/release/python /usr/bin/python3 examples/python/benchmark.py [--vertices N]
 """
@@ -23,23 +23,23 @@ def best(call, repeats=7):
 
 
 def peak():
-    """MB, as large as it ever was."""
+    """The peak memory of the process so far, MB."""
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
 
 
 def overhead(solver):
-    """What a call takes beside the extension module's own work, and what it takes where there is nothing to do."""
+    """The time that a call spends outside the extension module, and the time of a call with almost no work."""
     at = _places.point(0, "source", solver.surface)
     core = best(lambda: solver._core.maps(at, None, {"frames": True}, None))
     whole = best(lambda: solver.log_map(0).uv)
     small = ahm.LogMapSolver(ahm.shapes.plane(3, 3))
     tiny = best(lambda: [small.log_map(0).uv for _ in range(1000)]) / 1000
     print(f"log map: {1e3 * whole:.1f} ms, of which the extension module {1e3 * core:.1f} ms")
-    print(f"the same call on 9 vertices, solve and all: {1e6 * tiny:.0f} us, {100 * tiny / whole:.2f} % of it")
+    print(f"a complete call on 9 vertices: {1e6 * tiny:.0f} us, {100 * tiny / whole:.2f} % of it")
 
 
 def memory(solver):
-    """Arrays of a map are views; what they show is there already."""
+    """The arrays of a map are views, so they need no memory of their own."""
     m = solver.log_map(0)
     before = peak()
     columns = [m.uv, m.distance, m.angle, m.spread, m.status]
@@ -55,7 +55,7 @@ def local(mesh):
     maps = ahm.local_maps(mesh, radius)
     held = sum(x.nbytes for x in (maps.indptr, maps.indices, maps.log, maps.distance, maps.weight, maps.transport)) / 2**20
     print(f"{maps}: {whole:.2f} s, of which the extension module {core:.2f} s")
-    print(f"{held:.0f} MB of results: peak {between - before:.0f} MB more by the extension module, {peak() - between:.0f} MB by the rest")
+    print(f"{held:.0f} MB of results: peak {between - before:.0f} MB more by the extension module, {peak() - between:.0f} MB by Python")
     before = peak()
     distances = maps.csr("distance")
     print(f"as a scipy matrix of {distances.nnz} entries: {peak() - before:.1f} MB more")

@@ -1,4 +1,4 @@
-"""Pictures of meshes and clouds with matplotlib alone: flat triangles, nearest last."""
+"""Pictures of meshes and clouds by matplotlib only: flat triangles, the nearest drawn last."""
 
 import matplotlib
 
@@ -18,7 +18,7 @@ def panels(count, size=3.4):
 
 
 def camera(towards, up=(0, 0, 1)):
-    """Rows: right, up, and towards the viewer."""
+    """A camera matrix with the rows right, up and towards the viewer."""
     z = np.asarray(towards, float) / np.linalg.norm(towards)
     x = np.cross(up, z)
     x /= np.linalg.norm(x)
@@ -26,7 +26,7 @@ def camera(towards, up=(0, 0, 1)):
 
 
 def paint(axes, V, F, color, view, cmap="viridis", limits=None):
-    """A mesh, by one number or RGB per vertex; numbers that are not finite are gray."""
+    """Draws a mesh colored by one number or RGB per vertex; numbers that are not finite are gray."""
     V, color = np.asarray(V) @ view.T, np.asarray(color, float)
     normal = np.cross(V[F[:, 1]] - V[F[:, 0]], V[F[:, 2]] - V[F[:, 0]])
     normal /= np.maximum(np.linalg.norm(normal, axis=1), 1e-300)[:, None]
@@ -44,7 +44,7 @@ def paint(axes, V, F, color, view, cmap="viridis", limits=None):
 
 
 def draw_line(axes, points, view, **style):
-    """A curve in front of the surface."""
+    """Draws a curve in front of the surface."""
     x, y, _ = (np.asarray(points) @ view.T).T
     axes.plot(x, y, **{"color": "black", "lw": 1.2, **style})
 
@@ -55,6 +55,6 @@ def draw_points(axes, points, view, **style):
 
 
 def rings_and_sectors(m, ring, sectors=12):
-    """0 and 1 by turns, and 2 where directions are not to be trusted, by rows of a log map."""
+    """Colors of a log map's rows: 0 and 1 alternate, 2 where the quality is below 0.5."""
     cell = (np.floor(m.distance / ring) + np.floor(sectors * (m.angle + np.pi) / (2 * np.pi))) % 2
     return np.where(m.quality < 0.5, 2.0, cell)

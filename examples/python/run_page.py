@@ -1,8 +1,8 @@
-"""Runs the cells of docs/python_tour.md in their order and makes its pictures.
+"""Runs the cells of docs/python_tour.md in order and makes its pictures.
 
     python3 run_page.py [--page PAGE.md] [--pictures FOLDER] [--level N]
 
-A cell is a block of Python code; what it leaves as `figure` becomes the picture that follows it on the page.
+A cell is a block of Python code. If it sets `figure`, that becomes the picture that follows it on the page.
 """
 
 import argparse
@@ -14,13 +14,13 @@ HOME = Path(__file__).resolve().parents[2]
 
 
 def cells(text):
-    """(code, name of the picture or None)."""
+    """Yields the code of each cell, and the name of its picture or None."""
     for code, picture in re.findall(r"```python\n(.*?)```(?:\s*!\[[^\]]*\]\(images/([\w.]+)\))?", text, re.S):
         yield code, picture or None
 
 
 def save(figure, path):
-    """In 128 colors, which keeps pages light."""
+    """Saves a figure in 128 colors, which keeps pages small."""
     from PIL import Image
 
     drawn = io.BytesIO()
@@ -33,7 +33,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--page", type=Path, default=HOME / "docs/python_tour.md")
     parser.add_argument("--pictures", type=Path, default=HOME / "docs/images")
-    parser.add_argument("--level", type=int, help="of the shapes, instead of the page's own: less is quicker and coarser")
+    parser.add_argument("--level", type=int, help="level of the shapes, instead of the page's own: a lower one is faster and coarser")
     options = parser.parse_args()
     text, names = options.page.read_text(encoding="utf-8"), {"__name__": "page"}
     if options.level:

@@ -1,1 +1,1 @@
-// Nothing: a target needs a source to have a precompiled header.
+// Empty: CMake requires a source file in a target with precompiled headers.

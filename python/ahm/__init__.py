@@ -6,11 +6,12 @@
 >>> solver = ahm.SurfaceSolver(mesh)                   # prepares the method once, for any number of sources
 >>> maps = solver.log_maps([0, 7, 12])
 
-Arrays go in and out by row of the input; positions in world units; floats are float64. Wrong arguments raise ValueError
-(or TypeError) naming argument, index and value. Long computations let other threads run and end with Ctrl-C.
+Arrays have one entry per row of the input: per vertex of a mesh, or per point of a cloud. Lengths and positions are in world
+units, the units of the input. Floating-point results are float64. Wrong arguments raise ValueError or TypeError; the message
+names the argument, the index and the value. Long computations release the interpreter lock. Ctrl-C interrupts them.
 """
 
-from . import _interpreter  # first: in a subinterpreter loading the extension would hang
+from . import _interpreter  # first: loading the extension in a subinterpreter would hang
 
 import atexit as _atexit
 

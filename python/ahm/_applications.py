@@ -1,4 +1,4 @@
-"""Curves as sources, cells, spread points, and means."""
+"""Curves as sources, geodesic Voronoi cells, farthest points, and means."""
 
 from __future__ import annotations
 
@@ -17,47 +17,48 @@ from ._solvers import ExactGeodesics, Maker, PolarMapSolver, as_body, as_maker, 
 
 
 class Stroke(NamedTuple):
-    """A log map from a curve, and the curve as it was drawn on the surface."""
+    """The log map from a curve, and the curve on the surface. Returned by `stroke`."""
 
-    map: LogMap  #: u: arclength, v: signed distance, positive on the curve's left
-    points: np.ndarray  #: (k, 3), world units
-    length: float  #: world units
-    gap: float  #: largest distance of the lines between the given points from the surface, world units
-    jump: float  #: largest distance between neighbouring points of the drawn curve, world units
+    map: LogMap  #: log map from the curve. u: arclength along it, v: signed distance, positive on its left
+    points: np.ndarray  #: (k, 3) corners of the curve on the surface, world units
+    length: float  #: length of the curve, world units
+    gap: float  #: largest distance of the curve from the surface before it was projected, world units
+    jump: float  #: longest of the pieces into which the curve was cut, world units
 
 
 def stroke(solver: Any, points: Any, *, closed: bool = False, shape: str = "line", positions: Any = None,
            method: Optional[str] = None, tolerance: Optional[float] = None, radius: Optional[float] = None,
            frames: bool = True, progress: Progress = None) -> Stroke:
-    """Coordinates along a curve: every row gets those of the nearest point of the curve, moved on by the way from there.
+    """Coordinates along a curve: the coordinates of the nearest point of the curve, plus the log map from there.
 
-    solver : a `LogMapSolver` or `ExactGeodesics`, or a surface (a mesh or cloud).
-    points : two or more, joined by shortest paths over flat faces and over the tangent planes of clouds, on twisted polygons by
-        straight lines that should stay near the surface: rows, positions, (face, barycentric), ((row, row), t).
-    closed : joins the last to the first.
-    shape : "line": u is the arclength; "circle": a closed curve becomes a circle about the origin.
-    positions : (k, 2) coordinates that the given points get instead of (arclength, 0), world units; straight in between.
-    method : of a surface: "heat" (default), or "exact" over the flat triangles of a mesh.
-    tolerance : of exact maps, as of `ExactGeodesics`.
-    radius, frames, progress : as of `LogMapSolver.log_map`.
+    solver : a `LogMapSolver`, an `ExactGeodesics`, or a surface (a mesh or a cloud).
+    points : two or more points of the curve: rows, positions, `(face, barycentric)`, `((row, row), t)`. Consecutive points are
+        joined by shortest paths, over the flat faces of a mesh or the tangent planes of a cloud. On twisted polygons they are
+        joined by straight lines; choose points so close that these lines stay near the surface.
+    closed : whether the last point is joined to the first.
+    shape : "line": u is the arclength. "circle": a closed curve becomes a circle around the origin of the (u, v) plane.
+    positions : (k, 2) coordinates (u, v) of the points, world units, linear between them; None: (arclength, 0).
+    method : for a surface: "heat" (default), or "exact" over the flat triangles of a mesh.
+    tolerance : maximum relative error of exact maps, as in `ExactGeodesics`.
+    radius, frames, progress : as in `LogMapSolver.log_map`.
 
     >>> import ahm
     >>> s = ahm.stroke(ahm.shapes.plane(9, 5), [[1, 2, 0], [7, 2, 0]])
     >>> s.map.uv[9 * 3 + 4].round(6).tolist(), round(s.length, 9)
     ([3.0, 1.0], 6.0)
 
-    Raises ValueError naming argument, index and value.
+    Raises ValueError naming the argument, the index and the value.
     """
     made = as_maker(solver, method, tolerance=tolerance)
     if isinstance(made, PolarMapSolver):
-        raise ValueError("method: polar maps start at points; a stroke takes 'heat' or 'exact'")
+        raise ValueError("method: polar maps cannot start at a curve; use 'heat' or 'exact'")
     at = places.points(points, "points", made.surface)
     arguments.choice(shape, "shape", ("line", "circle"))
     uv = np.empty((0, 2))
     if positions is not None:
         uv = arguments.floats(positions, "positions", (len(at[2]), 2), finite=True)
         if shape != "line":
-            raise ValueError("positions: have a shape of their own; leave `shape` out")
+            raise ValueError("positions: cannot be combined with `shape`; use one of them")
     shaped = (arguments.flag(closed, "closed"), shape == "circle", checked(radius=radius, frames=frames))
     with reporting(progress) as report:
         found, drawn, length, gap, jump = _core.stroke(made._maker, at, uv, *shaped, report)
@@ -65,7 +66,7 @@ def stroke(solver: Any, points: Any, *, closed: bool = False, shape: str = "line
 
 
 class _StrokeRecipe(NamedTuple):
-    """How the map of a stroke is made, for its pickle."""
+    """The inputs of the map of a stroke, which its pickle stores instead of the map."""
 
     maker: Maker
     at: tuple
@@ -84,26 +85,27 @@ class _StrokeRecipe(NamedTuple):
 
 
 class Cells(NamedTuple):
-    """Geodesic Voronoi cells, by rows."""
+    """Geodesic Voronoi cells: the nearest source of every row. Returned by `cells`."""
 
-    labels: np.ndarray  #: (n,) int32 number of the nearest source; -1 in components without one
-    distance: np.ndarray  #: (n,) from that source, world units; NaN in components without one
+    labels: np.ndarray  #: (n,) int32 number of the nearest source; -1 in components without a source
+    distance: np.ndarray  #: (n,) geodesic distance from that source, world units; NaN in components without a source
 
 
 def cells(surface: Any, sources: Any, *, method: Optional[str] = None, tolerance: Optional[float] = None,
           progress: Progress = None) -> Cells:
-    """Which of the sources is nearest to every row, in one pass, whatever their number.
+    """Geodesic Voronoi cells: for every row, which source is nearest. Takes one pass for any number of sources.
 
-    sources : rows, positions, (face, barycentric), ((row, row), t); rows each once.
-    method : "unfold" (default) or "exact", as of `distance`; an `ExactGeodesics` instead of a surface is exact, too.
-    tolerance : of exact distances, as of `ExactGeodesics`.
-    progress : as of `LogMapSolver`.
+    surface : a `Surface`, a solver, or what `ahm.surface` takes.
+    sources : rows, positions, `(face, barycentric)`, `((row, row), t)`. A row may occur only once.
+    method : "unfold" (default) or "exact", as in `distance`. If `surface` is an `ExactGeodesics`, the default is "exact".
+    tolerance : maximum relative error of exact distances, as in `ExactGeodesics`.
+    progress : as in `LogMapSolver`.
 
     >>> import ahm
     >>> ahm.cells(ahm.shapes.plane(5, 2), [0, 4]).labels[[0, 1, 3, 4]].tolist()
     [0, 0, 1, 1]
 
-    Raises ValueError naming argument, index and value.
+    Raises ValueError naming the argument, the index and the value.
     """
     on = as_body(surface)
     method = _unfold_or_exact(surface, method)
@@ -111,7 +113,7 @@ def cells(surface: Any, sources: Any, *, method: Optional[str] = None, tolerance
     to_rows = np.flatnonzero(kinds == places.ROW)
     _, first = np.unique(rows[to_rows], return_index=True)
     for again in np.setdiff1d(to_rows, to_rows[first]):
-        raise ValueError(f"sources[{again}]: row {rows[again]} is given twice")
+        raise ValueError(f"sources[{again}]: row {rows[again]} occurs twice")
     distance, labels = distance_and_nearest(surface, sources, method=method, tolerance=tolerance, progress=progress)
     return Cells(labels, distance)
 
@@ -124,19 +126,19 @@ def _unfold_or_exact(surface: Any, method: Optional[str]) -> str:
 
 def farthest_points(surface: Any, count: int, first: Any = 0, *, method: Optional[str] = None,
                     tolerance: Optional[float] = None, progress: Progress = None) -> np.ndarray:
-    """`count` rows spread evenly, each the farthest from those before it, beginning with `first`.
+    """Farthest point sampling: `count` rows, beginning with `first`; each is the farthest from the previous ones.
 
-    surface : a `Surface`, or what `ahm.surface` takes.
-    count : 1 to the number of rows.
-    first : a row; since the result is rows, of any other point the nearest one.
-    method, tolerance : as of `cells`.
-    progress : as of `LogMapSolver`.
+    surface : a `Surface`, a solver, or what `ahm.surface` takes.
+    count : number of rows in the result, from 1 to the number of rows of the surface.
+    first : a row, or another point, whose nearest row is used.
+    method, tolerance : as in `cells`.
+    progress : as in `LogMapSolver`.
 
     >>> import ahm
     >>> ahm.farthest_points(ahm.shapes.plane(5, 2), 2).tolist()
     [0, 9]
 
-    Returns (count,) int32. Raises ValueError naming argument and value.
+    Returns (count,) int32. Raises ValueError naming the argument and the value.
     """
     on = as_body(surface)
     by = _unfold_or_exact(surface, method)
@@ -148,41 +150,47 @@ def farthest_points(surface: Any, count: int, first: Any = 0, *, method: Optiona
 
 
 class Center(NamedTuple):
-    """A point of the surface, near a row."""
+    """The mean or median of points on a surface. Returned by `karcher_mean` and `geometric_median`."""
 
-    row: Optional[int]  #: the nearest one; None where that vertex is none of the input
-    offset: np.ndarray  #: (d,) log map of the center from there, in its frame, world units
-    position: Optional[np.ndarray]  #: (3,) in space, world units: on the faces of a mesh, in the tangent plane of a row of a
-    #: cloud; (d,) on a grid; of a graph in the tangent plane of a frame, None without
-    spread: float  #: mean: root mean squared distance; median: mean distance; world units
-    maps: int  #: log maps that the search took
-    converged: bool  #: False where `max_maps` ended it
-    residual: float  #: how far from a least value, seen by one more log map from the center itself. Mean: length of the weighted
-    #: mean of the points' coordinates, world units; median: of their unit vectors, less the weight of points at the center.
-    #: On clouds and graphs a map from beside a vertex is that of the vertex, shifted: there it tells of convergence alone
-    point: Any  #: the center as functions take points: (face, barycentric) of a mesh, else the position, or None
+    row: Optional[int]  #: row of the graph vertex nearest to the center; None if that vertex is not in the input
+    offset: np.ndarray  #: (d,) log map of the center from that vertex, in the vertex's frame, world units
+    #: Position in space, world units. On a mesh: (3,), on its faces. On a cloud: (3,), in the tangent plane of a row. On a grid:
+    #: (d,). On a graph: (3,), in the tangent plane of a frame; None without frames.
+    position: Optional[np.ndarray]
+    #: Mean: root mean square of the weighted distances. Median: weighted mean of the distances. World units.
+    spread: float
+    maps: int  #: number of log maps computed by the search
+    converged: bool  #: False if the search stopped at `max_maps`
+    #: Distance from a minimum, measured with one more log map, from the center itself. Mean: length of the weighted mean of the
+    #: points' coordinates, world units. Median: the same for their unit vectors, minus the weight share of points at the center.
+    #: On clouds and graphs, the map from a point near a vertex is the shifted map of the vertex. There the residual shows only
+    #: whether the search converged.
+    residual: float
+    #: The center in a form that other functions accept as a point: (face, barycentric) on a mesh, otherwise the position, or None
+    point: Any
 
 
 def karcher_mean(solver: Any, points: Any, weights: Any = None, *, start: Any = None, method: str = "auto",
                  tolerance: Optional[float] = None, max_maps: int = 50, radius: Optional[float] = None,
                  progress: Progress = None) -> Center:
-    """The Riemannian center of mass: where the weighted sum of squared distances is least, near the start [Kar77].
+    """The Karcher mean (Riemannian center of mass): a local minimum of the weighted sum of squared distances [Kar77].
 
-    solver : a `LogMapSolver` or `ExactGeodesics`, or a surface.
+    solver : a `LogMapSolver`, a `PolarMapSolver`, an `ExactGeodesics`, or a surface.
     points : k points: rows, positions, `(faces, barycentric)`, `(edges, t)`.
-    weights : (k,) >= 0, or None: all equal.
-    start : where the search begins, the row nearest to this point; None: near the point of the largest weight.
-    method : of a surface: "auto" (default), "polar", "heat" or "exact", as of `log_map`.
-    tolerance : of exact maps, as of `ExactGeodesics`.
-    max_maps : >= 1; each step is one log map. radius : of the maps, world units; it must reach from the center and the start to
-        every point. progress : as of `LogMapSolver`.
+    weights : (k,) numbers >= 0, not all 0; None: all equal.
+    start : the search begins at the row nearest to this point; None: near the point with the largest weight.
+    method : for a surface: "auto" (default), "polar", "heat" or "exact", as in `log_map`.
+    tolerance : maximum relative error of exact maps, as in `ExactGeodesics`.
+    max_maps : maximum number of log maps, >= 1; each step of the search computes one.
+    radius : radius of the maps, world units. It must cover every point, from the center and from the start. None: no limit.
+    progress : as in `LogMapSolver`.
 
     >>> import ahm
     >>> mean = ahm.karcher_mean(ahm.shapes.plane(9, 9), [0, 8, 72, 80])
     >>> mean.row, mean.converged, mean.residual < 1e-9
     (40, True, True)
 
-    Raises ValueError naming argument, index and value; points in different components have no mean.
+    Raises ValueError naming the argument, the index and the value, also for points in different components.
     """
     return _center(chosen_maker(solver, method, tolerance=tolerance), points, weights, False, start, max_maps, radius, progress)
 
@@ -190,7 +198,9 @@ def karcher_mean(solver: Any, points: Any, weights: Any = None, *, start: Any = 
 def geometric_median(solver: Any, points: Any, weights: Any = None, *, start: Any = None, method: str = "auto",
                      tolerance: Optional[float] = None, max_maps: int = 50, radius: Optional[float] = None,
                      progress: Progress = None) -> Center:
-    """Where the weighted sum of distances is least, near the start [FVJ09]. Result, arguments and errors as of `karcher_mean`.
+    """The geometric median: a local minimum of the weighted sum of distances, near the start [FVJ09].
+
+    Result, arguments and errors as in `karcher_mean`.
 
     >>> import ahm
     >>> ahm.geometric_median(ahm.shapes.plane(9, 9), [0, 8, 72], [3.0, 1.0, 1.0]).row
@@ -219,7 +229,7 @@ def _weights(weights: Any, count: int) -> np.ndarray:
         k = int(np.argmax(given < 0))
         raise ValueError(f"weights[{k}]: {given[k]} is less than 0")
     if not given.any():
-        raise ValueError("weights: all are 0")
+        raise ValueError("weights: all are 0; at least one must be positive")
     return given
 
 

@@ -16,16 +16,17 @@ from ._surfaces import Surface
 class PointCloud(Surface):
     """Scattered points as a surface: normals, local Delaunay triangulations, tufted Laplacian [SC20].
 
-    points : (n, 3) positions, world units; equal points share one vertex.
-    normals : (n, 3) of any length > 0, or None: estimated.
-    k : neighbours per point; None: 30.
-    normal_signs : what the signs of given normals mean: "automatic", "oriented" (trusted one by one), "unoriented".
-    smooth : the points are smoothed before the graph is built (`points` stay as given). None: where there is noise; 0: not;
-        else everywhere, over neighbourhoods of this radius, world units.
-    max_edge_ratio : points are joined only up to this multiple of the distance to the k-th neighbour.
-    drop_non_finite : leave rows with NaN or infinity out (status `removed`) instead of raising.
-    rows : build from these rows only, ascending; the others are `removed`.
-    threads, progress : as of `TriangleMesh`.
+    points : (n, 3) positions, world units. Equal points share one vertex of the graph.
+    normals : (n, 3) normals of any length > 0; None: estimated from the points.
+    k : number of neighbors per point; None: 30.
+    normal_signs : meaning of the signs of `normals`. "automatic": the majority in each component decides which side is up.
+        "oriented": every sign is correct. "unoriented": the signs are ignored.
+    smooth : radius of the neighborhoods for smoothing, world units. The points are smoothed before the graph is built; `points`
+        returns the input. None: automatic, where the noise exceeds one eighth of the spacing. 0: no smoothing.
+    max_edge_ratio : two points are joined only if their distance is at most this multiple of the distance to the k-th neighbor.
+    drop_non_finite : drop points with NaN or infinite coordinates (status `removed`) instead of raising.
+    rows : rows to build the surface from, ascending; None: all. The other rows get the status `removed`.
+    threads, progress : as in `TriangleMesh`.
 
     Raises InvalidGeometry (fewer than 3 distinct points, values that are not finite, all points on a line), ResourceExhausted.
 
@@ -48,7 +49,7 @@ class PointCloud(Surface):
             self._options["rows"] = chosen = np.array(arguments.rows(rows, "rows", len(given)))
             if (np.diff(chosen) <= 0).any():
                 k = int(np.argmax(np.diff(chosen) <= 0)) + 1
-                raise ValueError(f"rows[{k}]: {chosen[k]} follows {chosen[k - 1]}; they have to ascend")
+                raise ValueError(f"rows[{k}]: {chosen[k]} follows {chosen[k - 1]}; rows must ascend")
         with reporting(progress) as report:
             self._body = _core.point_cloud(given, self._normals, self._options, report)
 

@@ -1,4 +1,4 @@
-"""Distance, transport and extension; and the operators they stand on."""
+"""Distance, parallel transport, extension of scalars, curvature, and the matrices of the heat method."""
 
 from __future__ import annotations
 
@@ -16,17 +16,19 @@ from ._solvers import as_body, as_solver, tolerance_of
 
 def distance(surface: Any, sources: Any, *, targets: Any = None, method: str = "unfold", radius: Optional[float] = None,
              tolerance: Optional[float] = None, progress: Progress = None) -> np.ndarray:
-    """Geodesic distance from the nearest of the sources, world units.
+    """Geodesic distance from the nearest of one or more sources, world units.
 
-    surface : a `Surface`, a `LogMapSolver` (method "heat" uses its factors), or what `ahm.surface` takes.
+    surface : a `Surface`, a solver (method "heat" reuses the factors of a `LogMapSolver`), or what `ahm.surface` takes.
     sources : one or more points: rows, positions, `(faces, barycentric)`, `(edges, t)`.
-    targets : None: all rows, result (n,); or points, result (k,). Other targets than rows take method "exact".
-    method : "unfold": a front over the triangles, no heat, best for distances on meshes; "heat": the distance of a log
-        map, by one solve each of A and B on clouds, grids and graphs, smooth, best on noise, rounded off by about an edge half-way
-        between sources; on meshes log maps unfold it, too; "exact": of the flat triangles of a mesh.
-    radius : NaN beyond this distance; world units. Not for "heat".
-    tolerance : of exact distances, as of `ExactGeodesics`.
-    progress : as of `LogMapSolver`.
+    targets : None: all rows, the result has the shape (n,). Or k points, the result has the shape (k,). Targets that are not
+        rows require method "exact".
+    method : "unfold" (default): a wavefront over the triangles, best for distances on meshes. "heat": the distance of a log map
+        by the heat method, smooth, best on noise. "exact": exact on the flat triangles of a mesh. On clouds, grids and graphs,
+        "heat" takes one solve each with A and B and smooths over about one edge half-way between sources. On meshes it uses a
+        wavefront, too.
+    radius : rows beyond this distance get NaN; world units. Not for method "heat".
+    tolerance : maximum relative error of exact distances, as in `ExactGeodesics`.
+    progress : as in `LogMapSolver`.
 
     >>> import ahm
     >>> mesh = ahm.TriangleMesh(*ahm.shapes.plane(4, 3))
@@ -35,7 +37,7 @@ def distance(surface: Any, sources: Any, *, targets: Any = None, method: str = "
     >>> ahm.distance(mesh, (0, [0.5, 0.5, 0]), targets=[[2.5, 0, 0]], method="exact").round(9).tolist()
     [2.0]
 
-    NaN where there is no way. Raises ValueError naming argument, index and value.
+    Rows that are not connected to a source get NaN. Raises ValueError naming the argument, the index and the value.
     """
     return distance_and_nearest(surface, sources, targets=targets, method=method, radius=radius, tolerance=tolerance,
                                 progress=progress)[0]
@@ -44,8 +46,9 @@ def distance(surface: Any, sources: Any, *, targets: Any = None, method: str = "
 def distance_and_nearest(surface: Any, sources: Any, *, targets: Any = None, method: str = "unfold",
                          radius: Optional[float] = None, tolerance: Optional[float] = None,
                          progress: Progress = None) -> tuple:
-    """As `distance`, and the number of the nearest source, int32, -1 without a way; None by heat. Arguments and errors as of
-    `distance`.
+    """The result of `distance`, and the number of the nearest source: int32, -1 where none is connected; None for method "heat".
+
+    Arguments and errors as in `distance`.
 
     >>> import ahm
     >>> ahm.distance_and_nearest(ahm.shapes.plane(5, 2), [0, 4], targets=[1, 3])[1].tolist()
@@ -66,7 +69,7 @@ def distance_and_nearest(surface: Any, sources: Any, *, targets: Any = None, met
     with reporting(progress) as report:
         if method == "heat":
             if radius is not None:
-                raise ValueError("radius: method 'heat' has none")
+                raise ValueError("radius: method 'heat' does not support it; use 'unfold' or 'exact'")
             found, nearest = _core.heat_distance(as_solver(surface)._core, at, report)[0], None
         else:
             found, nearest = _core.front_distance(on._body, at, reach, report)
@@ -78,24 +81,30 @@ def distance_and_nearest(surface: Any, sources: Any, *, targets: Any = None, met
 def _target_rows(targets: Any, on: Any, method: str) -> np.ndarray:
     try:
         nested = np.ndim(targets) > 1 and len(targets) > 0
-    except ValueError:  # of parts of different lengths
+    except ValueError:  # parts of different lengths
         nested = True
     if nested:
-        raise ValueError(f"targets: method {method!r} takes rows only; method 'exact' takes other points")
+        raise ValueError(f"targets: method {method!r} accepts rows only; method 'exact' accepts other points")
     return arguments.rows(targets, "targets", len(on))
 
 
 class DistanceField(NamedTuple):
-    """Distance and its gradient, by rows."""
+    """Distance and its gradient. Returned by `distance_and_gradient`."""
 
-    distance: np.ndarray  #: (n,) world units
-    gradient: np.ndarray  #: (n, 3) unit vectors of space away from the source; (n, d) in frames on grids and graphs
+    distance: np.ndarray  #: (n,) geodesic distance from the nearest source, world units
+    #: (n, 3) unit vectors in space that point away from the source. On grids and graphs: (n, d), in the frame of each vertex
+    gradient: np.ndarray
 
 
 def distance_and_gradient(solver: Any, sources: Any, *, progress: Progress = None) -> DistanceField:
-    """Length and direction of the radial field (Lemma 1): by heat, without differentiating a distance.
+    """Distance and its gradient by the heat method: length and direction of the radial field (Lemma 1 of [SS25]).
 
-    solver : a `LogMapSolver`, or a surface. sources, progress : as of `distance`. Raises as that.
+    No distance is differentiated.
+
+    solver : a `LogMapSolver`, or a surface.
+    sources, progress : as in `distance`.
+
+    Raises as `distance`.
 
     >>> import ahm
     >>> field = ahm.distance_and_gradient(ahm.TriangleMesh(*ahm.shapes.plane(4, 3)), 0)
@@ -109,12 +118,13 @@ def distance_and_gradient(solver: Any, sources: Any, *, progress: Progress = Non
 
 
 def extend(solver: Any, points: Any, values: Any, *, progress: Progress = None) -> np.ndarray:
-    """Extends scalars given at points to all rows: each takes the value of the nearest one, blended at ties ([SSC19] Sec. 4).
+    """Extends scalars from points to all rows. Each row gets the value of the nearest point, blended at ties ([SSC19] Sec. 4).
 
     solver : a `LogMapSolver`, or a surface.
-    points : k points: rows, positions, `(faces, barycentric)`, `(edges, t)`. Of a position beside a cloud heat starts at the
-        nearest row, which alone is a vertex there.
-    values : (k,) numbers. progress : as of `LogMapSolver`.
+    points : k points: rows, positions, `(faces, barycentric)`, `(edges, t)`. On a cloud, a position is replaced by its nearest
+        row, because only rows are vertices there.
+    values : (k,) one number per point.
+    progress : as in `LogMapSolver`.
 
     >>> import ahm
     >>> ahm.extend(ahm.shapes.plane(9, 2), [0, 8], [1.0, 3.0])[:9].round(1).tolist()
@@ -123,7 +133,7 @@ def extend(solver: Any, points: Any, values: Any, *, progress: Progress = None) 
     >>> between[[0, 4, 8]].round(1).tolist()
     [1.0, 2.0, 3.0]
 
-    Returns (n,), NaN where no heat comes. Raises ValueError naming argument, index and value.
+    Returns (n,), NaN where no heat arrives. Raises ValueError naming the argument, the index and the value.
     """
     made = as_solver(solver)
     at = places.points(points, "points", made.surface)
@@ -133,20 +143,20 @@ def extend(solver: Any, points: Any, values: Any, *, progress: Progress = None) 
 
 
 def transport(solver: Any, points: Any, vectors: Any, *, progress: Progress = None) -> np.ndarray:
-    """Carries vectors given at points along shortest geodesics to all rows ([SSC19] Alg. 1).
+    """Parallel transports vectors from points along shortest geodesic paths to all rows ([SSC19] Alg. 1).
 
     solver : a `LogMapSolver`, or a surface.
-    points : k points: rows, positions, `(faces, barycentric)`, `(edges, t)`; of positions beside a cloud as of `extend`.
-    vectors : (k, 3) vectors of space, projected to the tangent plane or face; or (k, d) components: at rows in the frame of the
-        row, elsewhere in the axes that a log map from there has. One vector may be given as (3,) or (d,).
-    progress : as of `LogMapSolver`.
+    points : k points: rows, positions, `(faces, barycentric)`, `(edges, t)`. Positions near a cloud are treated as in `extend`.
+    vectors : (k, 3) vectors in space, projected to the tangent plane or face. Or (k, d) components: at rows in the frame of the
+        row, at other points in the axes of a log map from there. A single vector may have the shape (3,) or (d,).
+    progress : as in `LogMapSolver`.
 
     >>> import ahm
     >>> ahm.transport(ahm.shapes.plane(4, 3), 0, [1, 2, 0])[11, :2].round(9).tolist()
     [1.0, 2.0]
 
-    Returns (n, 3) or (n, d), as given, the latter in the frames of the rows; NaN where no heat comes. Raises ValueError naming
-    argument, index and value.
+    Returns (n, 3) vectors in space for vectors in space, and (n, d) components in the frames of the rows for components. NaN
+    where no heat arrives. Raises ValueError naming the argument, the index and the value.
     """
     made = as_solver(solver)
     at = places.points(points, "points", made.surface)
@@ -154,30 +164,32 @@ def transport(solver: Any, points: Any, vectors: Any, *, progress: Progress = No
     given = np.atleast_2d(given)
     width, d = given.shape[-1], made.surface.dimension
     if width not in ((3, d) if made.surface._body.has_surface else (d,)):
-        raise ValueError(f"vectors: 3 numbers of space or {d} in a frame are needed for each, not shape {given.shape}")
+        raise ValueError(f"vectors: expected 3 numbers in space or {d} in a frame per point, got shape {given.shape}")
     given = arguments.floats(given, "vectors", (len(at[2]), width), finite=True)
     with reporting(progress) as report:
         return _core.transport(made._core, at, given, report)[0]
 
 
 class Curvature(NamedTuple):
-    """Principal curvatures, by rows; NaN where there are too few neighbours to tell."""
+    """Principal curvatures of every row; NaN where a row has too few neighbors. Returned by `curvature`."""
 
     values: np.ndarray  #: (n, 2) kappa_1, kappa_2 with |kappa_1| >= |kappa_2|, 1 / world units
-    direction: np.ndarray  #: (n, 3) unit vector of space along which the curvature is kappa_1, up to its sign
+    direction: np.ndarray  #: (n, 3) unit vector in space along which the curvature is kappa_1, up to its sign
 
 
 def curvature(surface: Any, *, threads: int = 0, progress: Progress = None) -> Curvature:
-    """Principal curvatures and directions, of a paraboloid fitted around every row [CP05].
+    """Principal curvatures and directions of a paraboloid fitted around every row [CP05].
 
-    surface : a mesh or cloud. threads : 0: one per core; no result depends on it. progress : as of `LogMapSolver`.
+    surface : a mesh or a cloud.
+    threads : number of threads; 0: one per core. No result depends on it.
+    progress : as in `LogMapSolver`.
 
     >>> import ahm
     >>> k = ahm.curvature(ahm.shapes.sphere(3)).values
     >>> bool(abs(k - 1).max() < 0.05)
     True
 
-    Raises ValueError for grids in space and graphs without frames.
+    Raises ValueError for grids in space and for graphs without frames.
     """
     on = as_body(surface)
     with reporting(progress) as report:
@@ -185,25 +197,28 @@ def curvature(surface: Any, *, threads: int = 0, progress: Progress = None) -> C
 
 
 class Operators(NamedTuple):
-    """The operators of the affine heat method as scipy matrices, in units of the graph (lengths are `length_unit` world units)."""
+    """The operators of the affine heat method as scipy matrices. Returned by `operators`.
 
-    mass: Any  #: (n, n) diagonal M
-    laplacian: Any  #: (n, n) L, positive semi-definite: L u_i = sum_j w_ij (u_i - u_j)
-    connection_laplacian: Any  #: (n, n) complex Hermitian, or (n d, n d) real: L^nabla
-    transports: Any  #: R_ji per edge, from the frame of j to that of i: complex, or blocks
-    tau: np.ndarray  #: (n,) diffusion time of the component of every vertex, squared graph units
-    length_unit: float
-    vertex_of_row: np.ndarray  #: (rows,) int32; -1: removed. Matrices are by vertices
-    row_of_vertex: np.ndarray  #: (n,) int32; -1: a vertex that the input does not have
+    Matrices have one row per vertex of the graph, and are in units of the graph: a length of 1 is `length_unit` world units.
+    """
+
+    mass: Any  #: (n, n) mass matrix M, diagonal
+    laplacian: Any  #: (n, n) scalar graph Laplacian L, positive semi-definite: (L u)_i = sum_j w_ij (u_i - u_j)
+    connection_laplacian: Any  #: connection Laplacian L^nabla: (n, n) complex Hermitian, or (n d, n d) real
+    transports: Any  #: transports R_ji from the frame of j to the frame of i: (n, n) complex, or (n d, n d) real blocks
+    tau: np.ndarray  #: (n,) diffusion time of every vertex, by its component, squared graph units
+    length_unit: float  #: length of one graph unit, world units
+    vertex_of_row: np.ndarray  #: (rows,) int32 vertex of every row of the input; -1: removed
+    row_of_vertex: np.ndarray  #: (n,) int32 row of every vertex; -1: the vertex is not in the input
 
     @property
     def A(self) -> Any:
-        """M + tau L, symmetric positive definite."""
+        """A = M + tau L, symmetric positive definite."""
         return _plus(self.mass, self.tau, self.laplacian)
 
     @property
     def B(self) -> Any:
-        """M + tau L^nabla, Hermitian positive definite."""
+        """B = M + tau L^nabla, Hermitian positive definite."""
         repeat = self.connection_laplacian.shape[0] // len(self.tau)
         from scipy.sparse import identity, kron
 
@@ -218,10 +233,10 @@ def _plus(mass: Any, tau: np.ndarray, laplacian: Any) -> Any:
 
 
 def operators(surface: Any, *, t_coef: float = 1.0) -> Operators:
-    """The matrices of a surface, by vertices of its graph (see `vertex_of_row`).
+    """The matrices of the heat method on a surface, by vertices of its graph (`Operators.vertex_of_row`).
 
     surface : a `Surface`, or what `ahm.surface` takes.
-    t_coef : tau is t_coef h^2 with h the mean edge length of the vertex's component; > 0.
+    t_coef : factor of the diffusion time tau = t_coef h^2, with h the mean edge length of the component; > 0.
 
     >>> import ahm
     >>> ops = ahm.operators(ahm.shapes.sphere(2))

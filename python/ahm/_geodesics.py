@@ -14,14 +14,15 @@ from ._solvers import as_body
 
 
 class Path(NamedTuple):
-    """A curve on a mesh: straight inside a triangle between neighbouring points. Of a cloud: from tangent plane to tangent plane."""
+    """A path on a mesh or a cloud. Consecutive points lie in one triangle of the mesh, or in neighboring tangent planes."""
 
-    points: np.ndarray  #: (k, 3) in space, world units
-    face: Any  #: (k,) int32 face of the input of every point; of clouds None, as the next
-    barycentric: Any  #: (k, 3) weights of its corners; a list of k arrays where faces have other numbers of corners. Of polygons
-    #: that are not flat, of the point of the face nearest to the path, which runs over their triangles
-    length: float  #: world units
-    complete: bool  #: False of a trace that ended at the boundary
+    points: np.ndarray  #: (k, 3) points of the path in space, world units
+    face: Any  #: (k,) int32 face of the input in which each point lies; None on clouds
+    #: (k, 3) barycentric coordinates of each point in its face; a list of k arrays if not all faces are triangles; None on clouds.
+    #: On polygons that are not flat, the path runs over their triangles; the coordinates are those of the nearest point of the face.
+    barycentric: Any
+    length: float  #: length of the path, world units
+    complete: bool  #: False for a trace that ended at the boundary
 
     def __repr__(self) -> str:
         return f"<ahm.Path: {len(self.points)} points, {self.length:.6g} long{'' if self.complete else ', to the boundary'}>"
@@ -29,26 +30,26 @@ class Path(NamedTuple):
 
 def geodesic_path(surface: Any, stops: Any, to: Any = None, *, closed: bool = False, fast: bool = False, taut: bool = False,
                   progress: Progress = None) -> Optional[Path]:
-    """The shortest path between two points, or through stops in their order, exact up to rounding.
+    """The shortest path between two points, or through several stops in their order. On meshes it is exact up to rounding.
 
-    surface : a mesh or a cloud, or what `ahm.surface` takes. Over clouds paths are straight on planes, and short to second order in
-        the spacing elsewhere; they take neither `fast` nor `taut`.
-    stops : where the path starts, with `to`; or two or more points. Points are rows, positions, `(face, barycentric)`,
-        `((row, row), t)`.
-    to : where the path ends.
-    closed : and back to the first stop.
-    fast : locally shortest from stop to stop: at any size in time near linear, but there may be a shorter way on the other
-        side of a hill.
-    taut : pulled taut, so that it leaves its stops and is locally shortest everywhere: only its ends stay; of a closed one
-        see `geodesic_loop`.
-    progress : as of `LogMapSolver`.
+    surface : a mesh or a cloud, or what `ahm.surface` takes. On clouds, the length has an error of second order in the spacing,
+        and none where the points lie in a plane. Clouds support neither `fast` nor `taut`.
+    stops : the start of the path if `to` is used; otherwise two or more points. Points are rows, positions,
+        `(face, barycentric)`, `((row, row), t)`.
+    to : the end of the path.
+    closed : whether the path returns to the first stop.
+    fast : locally shortest paths from stop to stop, in nearly linear time. A shorter path may exist, for example on the
+        other side of a hill.
+    taut : pull the path taut, so that it is locally shortest everywhere. It then no longer passes through the inner stops;
+        only the ends are fixed. For closed paths see `geodesic_loop`.
+    progress : as in `LogMapSolver`.
 
     >>> import ahm
     >>> path = ahm.geodesic_path(ahm.shapes.plane(4, 3), 0, 11)
     >>> round(path.length ** 2, 9), path.points[-1].tolist()
     (13.0, [3.0, 2.0, 0.0])
 
-    None where the surface does not connect them. Raises ValueError naming argument, index and value.
+    Returns None if the points are not connected. Raises ValueError naming the argument, the index and the value.
     """
     on = as_body(surface)
     if to is None:
@@ -64,10 +65,10 @@ def geodesic_path(surface: Any, stops: Any, to: Any = None, *, closed: bool = Fa
 def geodesic_loop(surface: Any, stops: Any, *, fast: bool = False, progress: Progress = None) -> Optional[Path]:
     """A closed geodesic: the closed path through the stops, pulled taut until it is locally shortest everywhere [XW07].
 
-    stops : three or more points, as of `geodesic_path`, around what shall hold the loop: a handle, a limb, a hole.
-    surface, fast, progress : as of `geodesic_path`.
+    stops : three or more points, as in `geodesic_path`, around a handle, a limb or a hole that holds the loop.
+    surface, fast, progress : as in `geodesic_path`.
 
-    It begins and ends at the same point. Around nothing that would hold it, it shrinks to a point, of length 0.
+    The loop begins and ends at the same point. If nothing holds it, it shrinks to a point of length 0.
 
     >>> import ahm
     >>> V, F = ahm.shapes.torus(48, 24, tube=0.4)
@@ -75,36 +76,37 @@ def geodesic_loop(surface: Any, stops: Any, *, fast: bool = False, progress: Pro
     >>> bool(abs(loop.length - 2 * 3.1416 * 0.4) < 0.02)
     True
 
-    None where the surface does not connect them. Raises as `geodesic_path`.
+    Returns None if the stops are not connected. Raises as `geodesic_path`.
     """
     return geodesic_path(surface, stops, closed=True, fast=fast, taut=True, progress=progress)
 
 
 def geodesic_paths(surface: Any, sources: Any, targets: Any, *, pairwise: bool = False, fast: bool = False,
                    progress: Progress = None) -> List[Optional[Path]]:
-    """The shortest path to every target from the nearest of the sources, of one propagation.
+    """The shortest path to every target from the nearest of the sources, computed by one propagation.
 
-    surface, progress : as of `geodesic_path`; over clouds `pairwise` alone. sources, targets : one or more points each.
-    pairwise : instead to target k from source k, one propagation for every distinct source.
-    fast : with `pairwise`, on meshes: locally shortest, as of `geodesic_path`.
+    surface, progress : as in `geodesic_path`. Clouds require `pairwise`.
+    sources, targets : one or more points each.
+    pairwise : compute the path from source k to target k instead, with one propagation per distinct source.
+    fast : locally shortest paths, as in `geodesic_path`; on meshes, with `pairwise`.
 
     >>> import ahm
     >>> paths = ahm.geodesic_paths(ahm.shapes.plane(4, 3), 0, [3, 8])
     >>> [round(path.length, 9) for path in paths]
     [3.0, 2.0]
 
-    None where there is no way. Raises as `geodesic_path`.
+    Returns one path per target, None where a target is not connected. Raises as `geodesic_path`.
     """
     on = as_body(surface)
     start, end = places.points(sources, "sources", on), places.points(targets, "targets", on)
     arguments.flag(fast, "fast"), arguments.flag(pairwise, "pairwise")
     if pairwise:
         if len(start[2]) != len(end[2]):
-            raise ValueError(f"targets: {len(end[2])} points for the {len(start[2])} sources; pairwise there are as many")
+            raise ValueError(f"targets: pairwise=True requires as many targets as sources, got {len(end[2])} and {len(start[2])}")
         with reporting(progress) as report:
             found = _core.paired_paths(on._body, start, end, fast, report)
     elif fast:
-        raise ValueError("fast: goes with pairwise=True")
+        raise ValueError("fast: requires pairwise=True")
     else:
         with reporting(progress) as report:
             found = _core.paths(on._body, start, end, report)
@@ -113,23 +115,24 @@ def geodesic_paths(surface: Any, sources: Any, targets: Any, *, pairwise: bool =
 
 def trace(surface: Any, start: Any, direction: Any, length: Optional[float] = None, *,
           progress: Progress = None) -> Path:
-    """The straightest geodesic from a point: the exponential map [PS98].
+    """The straightest geodesic from a point in a direction: the exponential map [PS98].
 
     start : a row, a position, `(face, barycentric)`, or `((row, row), t)`.
-    direction : (3,) vector of space, projected to the surface.
-    length : >= 0, world units; None: that of `direction`. surface, progress : as of `geodesic_path`.
+    direction : (3,) vector in space, projected to the surface.
+    length : length of the geodesic, >= 0, world units; None: the length of `direction`.
+    surface, progress : as in `geodesic_path`.
 
     >>> import ahm
     >>> end = ahm.trace(ahm.shapes.plane(4, 3), 0, [1, 0.5, 0], 2).points[-1]
     >>> [round(float(x), 6) for x in end]
     [1.788854, 0.894427, 0.0]
 
-    It ends at the boundary (`complete` is False). Raises as `geodesic_path`.
+    A geodesic that reaches the boundary ends there, and its `complete` is False. Raises as `geodesic_path`.
     """
     on = as_body(surface)
     along = arguments.vector(direction, "direction")
     if along is None:
-        raise TypeError("direction: three numbers are needed, not None")
+        raise TypeError("direction: expected three numbers, got None")
     far = float(np.linalg.norm(along)) if length is None else arguments.real(length, "length")
     with reporting(progress) as report:
         return Path(*_core.trace(on._body, places.point(start, "start", on), along, far, report))

@@ -1,4 +1,4 @@
-"""Grids, and graphs of one's own."""
+"""Regular grids, and user-defined tangent graphs."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from ._surfaces import Surface
 
 
 class Grid(Surface):
-    """A regular grid in the plane or in space, with or without obstacles. Row numbers run fastest along the first axis.
+    """A regular grid in the plane or in space, with or without obstacles. The row number changes fastest along the first axis.
 
-    shape : vertices along each axis, 2 or 3 numbers >= 2.
-    spacing : lengths along each axis > 0, or one for all; world units.
-    origin : position of row 0; None: zero.
-    blocked : None, or one value per cell, True inside obstacles: an array of shape (shape[0] - 1, shape[1] - 1, ...).
+    shape : number of vertices along each axis, 2 or 3 numbers >= 2.
+    spacing : edge length along each axis, or one number for all axes; > 0, world units.
+    origin : position of row 0, world units; None: zero.
+    blocked : bool array of shape (shape[0] - 1, shape[1] - 1, ...), True for cells inside obstacles; None: no obstacles.
 
     Raises InvalidGeometry, ResourceExhausted.
 
@@ -38,7 +38,7 @@ class Grid(Surface):
         if blocked is not None:
             cells = np.asarray(blocked)
             if cells.dtype.kind not in "biu" or cells.shape != tuple(self._shape - 1):
-                raise ValueError(f"blocked: a bool array of shape {tuple(int(s) for s in self._shape - 1)} is needed, not "
+                raise ValueError(f"blocked: expected a bool array of shape {tuple(int(s) for s in self._shape - 1)}, got "
                                  f"{arguments.describe(blocked, cells)}")
             self._blocked = np.ascontiguousarray((cells != 0).ravel(order="F"), np.uint8)
         self._options = {}
@@ -50,11 +50,11 @@ class Grid(Surface):
 
     @property
     def shape(self) -> Tuple[int, ...]:
-        """Vertices along each axis: a result `x` by rows is `x.reshape(grid.shape, order="F")`."""
+        """Number of vertices along each axis. `x.reshape(grid.shape, order="F")` is a result `x` as an array over the grid."""
         return tuple(int(s) for s in self._shape)
 
     def row(self, steps: Any) -> int:
-        """The row at these steps along the axes. Raises ValueError outside of the grid.
+        """The row of the vertex at `steps`, its integer coordinates along the axes. Raises ValueError outside the grid.
 
         >>> import ahm
         >>> ahm.Grid((5, 4)).row((3, 2))
@@ -62,7 +62,7 @@ class Grid(Surface):
         """
         at = arguments.integers(steps, "steps", 1)
         if at.shape != self._shape.shape or (at < 0).any() or (at >= self._shape).any():
-            raise ValueError(f"steps: {at.tolist()} lies outside of the grid of shape {self.shape}")
+            raise ValueError(f"steps: {at.tolist()} is outside the grid of shape {self.shape}")
         return int(np.ravel_multi_index(tuple(at), self.shape, order="F"))
 
     def _state(self) -> tuple:
@@ -74,19 +74,21 @@ class Grid(Surface):
 
 
 class Graph(Surface):
-    """A tangent graph of your own, in compressed rows, whose tangent spaces are R^d (docs/concepts/graph_contract.md).
+    """A user-defined tangent graph with tangent spaces R^d, in compressed rows (docs/concepts/graph_contract.md).
 
-    indptr : (n + 1,), indices : (e,) the neighbour of every directed edge; each edge has its reverse.
-    weights : (e,) w_ij = w_ji.
-    logs : (e, d): where neighbour j lies, seen from i, in the frame of i; world units.
-    transports : (e, 2) (cos, sin) or complex (e,), for d = 2; or (e, d, d): components in the frame of j -> in the frame of i.
-    masses : (n,) dual areas or volumes > 0.
-    frames : (n, 4, 3) origin, x, y and normal of every vertex in space, or None.
-    mean_edge_length : None: the mean of |logs|; world units.
-    length_unit : what a length of 1 in `logs` and `mean_edge_length` is in world units, which results are in.
-    is_delaunay : the graph is that of a Delaunay triangulation, on which distances are unfolded; d = 2.
+    indptr : (n + 1,) integers: vertex i has the directed edges indptr[i] : indptr[i + 1].
+    indices : (e,) neighbor j of every directed edge i -> j. The reverse of every edge is an edge, too.
+    weights : (e,) edge weights w_ij = w_ji.
+    logs : (e, d) logarithms: position of neighbor j in the frame of i, in units of `length_unit`.
+    transports : (e, 2) (cos, sin), or (e,) complex, both for d = 2; or (e, d, d). They take components in the frame of j to
+        components in the frame of i.
+    masses : (n,) dual areas or volumes, > 0, in units of `length_unit`^d.
+    frames : (n, 4, 3) origin, x axis, y axis and normal of every vertex in space, world units; or None.
+    mean_edge_length : in units of `length_unit`; None: the mean of |logs|.
+    length_unit : length of 1 in `logs` and `mean_edge_length`, world units. Results are in world units.
+    is_delaunay : whether the graph is that of a Delaunay triangulation, d = 2. Distances are then computed by a wavefront.
 
-    Raises InvalidGraph (a ValueError) naming the first law that is broken, with its vertex or edge.
+    Raises InvalidGraph (a ValueError) naming the first violation of the graph contract, with its vertex or edge.
 
     >>> import ahm, numpy as np
     >>> line = ahm.Graph([0, 1, 3, 4], [1, 0, 2, 1], weights=np.ones(4), logs=[[1], [-1], [1], [-1]],
@@ -102,7 +104,7 @@ class Graph(Surface):
         neighbors = arguments.integers(indices, "indices", 1)
         e, n = len(neighbors), len(begin) - 1
         if n < 1 or begin[0] != 0 or begin[-1] != e or (np.diff(begin) < 0).any():
-            raise ValueError(f"indptr: it must rise from 0 to the {e} entries of `indices`")
+            raise ValueError(f"indptr: must ascend from 0 to {e}, the length of `indices`")
         outside = (neighbors < 0) | (neighbors >= n)
         if outside.any():
             k = int(np.argmax(outside))
@@ -110,7 +112,7 @@ class Graph(Surface):
         edges = arguments.floats(logs, "logs", (e, None), finite=True)
         d = edges.shape[1]
         if d < 1:
-            raise ValueError(f"logs: shape ({e}, d) with d at least 1 is needed, not {edges.shape}")
+            raise ValueError(f"logs: expected shape ({e}, d) with d >= 1, got {edges.shape}")
         if isinstance(transports, (list, tuple)):
             transports = _listed(transports)
         if np.iscomplexobj(transports):
@@ -121,7 +123,7 @@ class Graph(Surface):
         else:
             turns = arguments.floats(transports, "transports", (e, d, d), finite=True)
         if turns.ndim == 2 and d != 2:
-            raise ValueError(f"transports: (cos, sin) goes with logs of 2 numbers, not of {d}")
+            raise ValueError(f"transports: (cos, sin) requires logs of shape (e, 2), got (e, {d})")
         self._options = {"length_unit": arguments.real(length_unit, "length_unit", positive=True),
                          "is_delaunay": arguments.flag(is_delaunay, "is_delaunay")}
         if mean_edge_length is not None:
@@ -137,7 +139,7 @@ class Graph(Surface):
 
     @property
     def points(self) -> Optional[np.ndarray]:  # type: ignore[override]
-        """(n, 3) origins of the frames; None without."""
+        """(n, 3) origins of the frames, world units; None without frames."""
         frames = self._options.get("frames")
         return None if frames is None else frames[:, 0]
 

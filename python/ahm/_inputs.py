@@ -1,4 +1,4 @@
-"""Surfaces from files, and from what other packages hold."""
+"""Surfaces from files, and from objects of other packages."""
 
 from __future__ import annotations
 
@@ -15,12 +15,14 @@ from ._surfaces import Surface
 
 
 def read(path: Union[str, "os.PathLike[str]"], kind: Optional[str] = None, **options: Any) -> Surface:
-    """The surface in a file: .ply, .pcd, .las, .xyz, .txt, .asc, .csv, .pts, .off, .obj, .stl, .glb, .gltf, .vtp or .vtk, each also
+    """Reads a surface from a file.
+
+    Formats: .ply, .pcd, .las, .xyz, .txt, .asc, .csv, .pts, .off, .obj, .stl, .glb, .gltf, .vtp and .vtk, each also compressed
     as .gz.
 
-    path : its name: str, bytes or what has `__fspath__`.
-    kind : "triangles", "polygons" or "cloud"; None: as the file has it. A mesh read as a cloud keeps its normals.
-    options : of `TriangleMesh`, `PolygonMesh` or `PointCloud`.
+    path : name of the file: str, bytes or an object with `__fspath__`.
+    kind : "triangles", "polygons" or "cloud"; None: according to the faces in the file. A mesh read as a cloud keeps its normals.
+    options : arguments of `TriangleMesh`, `PolygonMesh` or `PointCloud`.
 
     >>> import ahm, tempfile
     >>> with tempfile.NamedTemporaryFile("w", suffix=".obj") as file:
@@ -29,7 +31,7 @@ def read(path: Union[str, "os.PathLike[str]"], kind: Optional[str] = None, **opt
     >>> mesh
     <ahm.TriangleMesh: 3 vertices, 1 faces>
 
-    Raises IoError (an OSError) naming the file and what is wrong with it, and as these.
+    Raises IoError (an OSError) naming the file and the problem. Also raises as the class of the surface.
     """
     got = _core.read_file(arguments.file_name(path, "path"))
     begin, corners = got["face_begin"], got["face_vertices"]
@@ -39,30 +41,31 @@ def read(path: Union[str, "os.PathLike[str]"], kind: Optional[str] = None, **opt
     if kind == "cloud":
         return PointCloud(got["points"], got["normals"], **options)
     if begin is None:
-        raise ValueError(f"kind: {os.fsdecode(path)} holds no faces; read it as a 'cloud'")
+        raise ValueError(f"kind: {os.fsdecode(path)} contains no faces; use kind='cloud'")
     if kind == "polygons":
         return PolygonMesh(got["points"], Compressed(begin, corners), **options)
     if not (np.diff(begin) == 3).all():
-        raise ValueError(f"kind: {os.fsdecode(path)} holds faces with other than 3 corners; read it as 'polygons'")
+        raise ValueError(f"kind: {os.fsdecode(path)} contains faces that are not triangles; use kind='polygons'")
     return TriangleMesh(got["points"], corners.reshape(-1, 3), **options)
 
 
 def surface(thing: Any, **options: Any) -> Surface:
-    """A surface of anything that has points and perhaps faces: PyVista, trimesh, Open3D, meshio, or a tuple (V, F).
+    """Makes a surface from an array, a tuple (V, F), or an object of PyVista, trimesh, Open3D or meshio.
 
-    thing : a `Surface` (returned as it is); an (n, 3) array (a cloud); a tuple `(vertices, faces)`; or an object with
-        `points`, `vertices` or `point.positions`, and `faces`, `regular_faces`, `triangles` or `cells_dict`.
-    options : of the class that it becomes.
+    thing : a `Surface` (returned unchanged), an (n, 3) array (a cloud), a tuple `(vertices, faces)`, or an object with points
+        and perhaps faces. Points are its `points`, `vertices` or `point.positions`; faces are its `faces`, `regular_faces`,
+        `triangles` or `cells_dict`.
+    options : arguments of the resulting class: `TriangleMesh`, `PolygonMesh` or `PointCloud`.
 
     >>> import ahm
     >>> ahm.surface(ahm.shapes.plane(4, 3))
     <ahm.TriangleMesh: 12 vertices, 12 faces>
 
-    Raises TypeError where it is none of these.
+    Raises TypeError for any other object.
     """
     if isinstance(thing, Surface):
         if options:
-            raise TypeError("surface: options make no sense for a surface that is made already")
+            raise TypeError("surface: options cannot be applied to an existing surface")
         return thing
     if isinstance(thing, tuple) and len(thing) == 2:
         return _mesh(thing[0], thing[1], options)
@@ -70,7 +73,7 @@ def surface(thing: Any, **options: Any) -> Surface:
         found = _attribute(thing, name)
         if found is not None and not callable(found):
             return _mesh(arguments.array(found, name), _faces_of(thing), options, getattr(thing, "normals", None))
-    for name in ("point", "vertex"):  # Open3D's tensors, of clouds and meshes
+    for name in ("point", "vertex"):  # Open3D's tensor-based clouds and meshes
         columns = _attribute(thing, name)
         found = _attribute(columns, "positions")
         if found is not None:
@@ -78,14 +81,14 @@ def surface(thing: Any, **options: Any) -> Surface:
             return _mesh(arguments.array(found, "positions"), None if faces is None else arguments.array(faces, "indices"), options,
                          _attribute(columns, "normals"))
     if isinstance(thing, (str, bytes, os.PathLike)):
-        raise TypeError(f"surface: {thing!r:.60} is a name; ahm.read reads files")
+        raise TypeError(f"surface: {thing!r:.60} is a name; read files with ahm.read")
     if (hasattr(thing, "__len__") or hasattr(thing, "__array__")) and not isinstance(thing, (dict, set)):
         return PointCloud(thing, **options)
     raise TypeError(f"surface: {type(thing).__name__} has no points, vertices or faces")
 
 
 def _attribute(thing: Any, name: str) -> Any:
-    """None where it is not there; Open3D's columns raise KeyError then."""
+    """The attribute, or None if it is missing. Open3D raises KeyError for missing columns."""
     try:
         return getattr(thing, name, None)
     except KeyError:
@@ -112,20 +115,20 @@ _VTK_KINDS = {1: "vertex", 3: "line", 5: "triangle", 7: "polygon", 9: "quad"}
 def _faces_of(thing: Any) -> Any:
     """The faces of an object: an (m, c) array, a list, compressed rows, or None."""
     try:
-        regular: Any = getattr(thing, "regular_faces", None)  # PyVista; raises where faces differ
+        regular: Any = getattr(thing, "regular_faces", None)  # PyVista; raises if faces have different numbers of corners
     except ValueError:
         regular = None
     if regular is not None:
         return np.asarray(regular)
-    cells = getattr(thing, "cells_dict", None)  # meshio; PyVista, by VTK's numbers
+    cells = getattr(thing, "cells_dict", None)  # meshio; PyVista uses VTK's numbers as keys
     if cells is not None:
         cells = {_VTK_KINDS.get(kind, kind): block for kind, block in cells.items()}
         solid = sorted(map(str, set(cells) - {"triangle", "quad", "polygon", "vertex", "line"}))
         if solid:
-            raise ValueError(f"surface: cells of the kind {solid[0]!r} are no faces; take the surface of the volume")
+            raise ValueError(f"surface: cells of type {solid[0]!r} are not faces; extract the surface of the volume")
         kinds = [cells[kind] for kind in ("triangle", "quad", "polygon") if kind in cells]
         return [face for block in kinds for face in block] if len(kinds) != 1 else np.asarray(kinds[0])
-    faces = getattr(thing, "faces", None)  # trimesh, whose triangles are positions
+    faces = getattr(thing, "faces", None)  # trimesh; its `triangles` are positions, not rows
     if faces is None:
         faces = getattr(thing, "triangles", None)  # Open3D
         return None if faces is None else np.asarray(faces)
@@ -140,7 +143,7 @@ def _padded_faces(padded: np.ndarray) -> List[np.ndarray]:
     while at < len(flat):
         count = int(flat[at])
         if not 0 <= count < len(flat) - at:
-            raise ValueError(f"faces[{at}]: a face of {count} corners, but {len(flat) - at - 1} numbers follow")
+            raise ValueError(f"faces[{at}]: cannot read a face of {count} corners; numbers left in the array: {len(flat) - at - 1}")
         result.append(flat[at + 1 : at + 1 + count])
         at += 1 + count
     return result

@@ -1,11 +1,11 @@
-"""Refuses subinterpreters, without any extension module."""
+"""Raises ImportError in a subinterpreter, before any extension module is loaded."""
 
 try:
     import _interpreters
 except ImportError:  # before Python 3.13
     try:
         import _xxsubinterpreters as _interpreters
-    except ImportError:  # none can be made here
+    except ImportError:  # this Python has no subinterpreters
         _interpreters = None
 
 if _interpreters is not None and _interpreters.get_current() != _interpreters.get_main():

@@ -1,4 +1,4 @@
-"""The map around every point, within a radius: for learning on surfaces."""
+"""Log maps around every point, within a radius: for learning on surfaces."""
 
 from __future__ import annotations
 
@@ -15,23 +15,29 @@ from ._solvers import as_body
 
 
 class PaddedMaps(NamedTuple):
-    """Local maps as arrays of the same length for every source; what is missing is 0 and `mask` False."""
+    """Local maps as arrays with k entries per source, nearest first. Missing entries are 0. Returned by `LocalMaps.padded`."""
 
-    indices: np.ndarray  #: (s, k) int32 rows
-    mask: np.ndarray  #: (s, k) bool
-    log: np.ndarray  #: (s, k, d)
-    distance: np.ndarray  #: (s, k)
-    weight: np.ndarray  #: (s, k)
-    transport: np.ndarray  #: (s, k, 2) (cos, sin), or (s, k, d, d)
+    indices: np.ndarray  #: (s, k) int32 rows of the neighbors
+    mask: np.ndarray  #: (s, k) bool, False for missing entries
+    log: np.ndarray  #: (s, k, d) coordinates of the neighbors in the source's frame, world units
+    distance: np.ndarray  #: (s, k) geodesic distances of the neighbors from the source, world units
+    weight: np.ndarray  #: (s, k) masses of the neighbors, world units to the power d
+    transport: np.ndarray  #: (s, k, 2) (cos, sin), or (s, k, d, d): from the source's frame to the neighbor's frame
 
 
 class LocalMaps:
-    """Local maps in compressed rows: source s has the entries indptr[s] : indptr[s + 1], nearest first, itself included.
+    """Local maps in compressed rows. Returned by `local_maps`.
 
-    indptr : (s + 1,) int64. indices : (e,) int32 rows. log : (e, d) coordinates in the source's frame, world units.
-    distance : (e,) geodesic, as `LogMap.distance`. weight : (e,) masses, world units to the power d, as integration weights.
-    transport : (e, 2) (cos, sin), or (e, d, d): components in the source's frame -> components in the neighbour's.
-    sources : (s,) int32 rows; -1 of sources that are no rows. columns : the number of rows. Made by `local_maps`.
+    Source s has the entries indptr[s] : indptr[s + 1], one per neighbor, nearest first. The source itself is its first neighbor.
+
+    indptr : (s + 1,) int64 offsets of the sources in the other arrays.
+    indices : (e,) int32 rows of the neighbors.
+    log : (e, d) coordinates of the neighbors in the source's frame, world units.
+    distance : (e,) geodesic distances of the neighbors from the source, as `LogMap.distance`, world units.
+    weight : (e,) masses of the neighbors, for integration, world units to the power d.
+    transport : (e, 2) (cos, sin), or (e, d, d): takes components in the source's frame to components in the neighbor's frame.
+    sources : (s,) int32 rows of the sources; -1 for sources that are not rows.
+    columns : number of rows of the surface.
 
     >>> import ahm
     >>> maps = ahm.local_maps(ahm.shapes.plane(9, 9), radius=1.0, sources=[40, 0])
@@ -46,16 +52,18 @@ class LocalMaps:
         self.distance, self.weight, self.transport = distance, weight, transport
 
     def csr(self, values: Any = "distance") -> Any:
-        """A scipy.sparse.csr_matrix, sources x rows, with arrays of its own, whose order in a row is that of distance.
+        """One value per entry as a scipy.sparse.csr_matrix of shape (sources, rows). Its arrays are copies.
 
-        values : "distance", "weight", "u", "v", "transport" (complex), or (e,) numbers of your own.
+        The columns of a matrix row are in order of distance, not sorted.
+
+        values : "distance", "weight", "u", "v", "transport" (complex), or an array of (e,) numbers.
 
         >>> import ahm
         >>> maps = ahm.local_maps(ahm.shapes.plane(9, 9), radius=1.0)
         >>> maps.csr().shape, round(float(maps.csr("weight")[40].sum()), 9)
         ((81, 81), 5.0)
 
-        Raises ValueError where `values` are none of these; ImportError without scipy.
+        Raises ValueError for any other `values`; ImportError without scipy.
         """
         from scipy.sparse import csr_matrix
 
@@ -65,39 +73,40 @@ class LocalMaps:
                 values = self.log[:, "uv".index(values)]
             elif values == "transport":
                 if self.transport.ndim != 2:
-                    raise ValueError("values: these transports are matrices, not rotations of the plane")
+                    raise ValueError("values: 'transport' requires rotations of the plane; these transports are matrices")
                 values = self.transport[:, 0] + 1j * self.transport[:, 1]
             else:
                 values = getattr(self, values)
         values = np.asarray(values)
         if values.dtype.kind not in "biufc":
-            raise TypeError(f"values: numbers are needed, not {arguments.describe(values, values)}")
+            raise TypeError(f"values: expected numbers, got {arguments.describe(values, values)}")
         if values.shape != self.indices.shape:
-            raise ValueError(f"values: shape ({len(self.indices)},) is needed, not {values.shape}")
-        # scipy needs both kinds of indices to have one type, and changes them in place.
+            raise ValueError(f"values: expected shape ({len(self.indices)},), got {values.shape}")
+        # scipy requires one type for both index arrays, and modifies them in place.
         index = np.int32 if len(self.indices) <= np.iinfo(np.int32).max else np.int64
         result = csr_matrix((len(self.sources), self.columns), dtype=values.dtype)
         result.data, result.indices, result.indptr = values.copy(), self.indices.astype(index), self.indptr.astype(index)
         return result
 
     def padded(self, k: Optional[int] = None, dtype: Any = np.float32) -> PaddedMaps:
-        """The k nearest entries of every source; None: as many as the longest has. For torch: `torch.from_numpy(p.log)`.
+        """Arrays of equal length for every source, for example for torch: `torch.from_numpy(p.log)`.
 
-        dtype : a floating type, of all but indices and mask.
+        k : number of entries per source, the nearest ones; None: the largest number of entries of any source.
+        dtype : floating-point type of the result, except for indices and mask.
 
         >>> import ahm
         >>> p = ahm.local_maps(ahm.shapes.plane(9, 9), radius=1.0).padded(4)
         >>> sorted(p.indices[0].tolist()), p.mask[0].tolist(), p.log.dtype
         ([0, 0, 1, 9], [True, True, True, False], dtype('float32'))
 
-        Raises ValueError (k < 1; a dtype that does not hold coordinates).
+        Raises ValueError (k < 1; a dtype that is not floating-point).
         """
         try:
             dtype = np.dtype(dtype)
         except TypeError:
-            raise TypeError(f"dtype: {dtype!r:.60} is no type of numbers") from None
+            raise TypeError(f"dtype: {dtype!r:.60} is not a numeric type") from None
         if dtype.kind != "f":
-            raise ValueError(f"dtype: {dtype} cannot hold coordinates; a floating type is needed")
+            raise ValueError(f"dtype: {dtype} cannot hold coordinates; use a floating-point type")
         counts = np.diff(self.indptr)
         width = int(counts.max(initial=0)) if k is None else arguments.integer(k, "k", 1)
         place = np.arange(len(self.indices)) - np.repeat(self.indptr[:-1], counts)
@@ -125,15 +134,18 @@ class LocalMaps:
 
 def local_maps(surface: Any, radius: Optional[float] = None, k: Optional[int] = None, *, sources: Any = None, u_axis: Any = None, margin: float = 2.0,
                t_coef: float = 1.0, variant: str = "adaptive", threads: int = 0, progress: Progress = None) -> LocalMaps:
-    """The log map around every row, or around `sources`, of everything within a radius or of the k nearest rows.
+    """Log maps within a radius, or of the k nearest rows, around every row or around `sources`.
 
-    radius : world units, > 0; None, with k: as far as those are.
-    k : keep only so many nearest entries per source, the source itself included; None: all within the radius.
-    sources : points (rows, positions, `(faces, barycentric)`, `(edges, t)`); None: all rows, of which those without a vertex
-        have no entries.
-    u_axis : (3,) a vector of space, projected to the surface at every source that is given; None: as of `LogMapSolver.log_map`.
-    margin : how far beyond the radius each patch reaches, in units of sqrt(tau).
-    t_coef, variant, threads, progress : as of `LogMapSolver`.
+    Time and memory depend on these neighborhoods, however large the surface is.
+
+    surface : a `Surface`, a solver, or what `ahm.surface` takes.
+    radius : radius of the maps, > 0, world units; None: large enough for k entries.
+    k : maximum number of entries per source, the source included; the nearest ones are kept. None: all within the radius.
+    sources : points: rows, positions, `(faces, barycentric)`, `(edges, t)`. None: all rows; rows without a vertex get no entries.
+    u_axis : (3,) vector in space, projected to the surface at every source. Requires `sources`. None: as in
+        `LogMapSolver.log_map`.
+    margin : width of the margin of each patch beyond the radius, in units of sqrt(tau). A larger margin is more accurate.
+    t_coef, variant, threads, progress : as in `LogMapSolver`.
 
     >>> import ahm
     >>> maps = ahm.local_maps(ahm.shapes.plane(9, 9), radius=1.5, k=9)
@@ -147,7 +159,7 @@ def local_maps(surface: Any, radius: Optional[float] = None, k: Optional[int] = 
     """
     on = as_body(surface)
     if radius is None and k is None:
-        raise ValueError("radius: is missing; give a radius, or k")
+        raise ValueError("radius: missing; pass a radius or k")
     if radius is not None:
         radius = arguments.real(radius, "radius", positive=True)
     options = checked(radius=radius, k=k, margin=margin, t_coef=t_coef,
@@ -155,7 +167,7 @@ def local_maps(surface: Any, radius: Optional[float] = None, k: Optional[int] = 
     axis = arguments.vector(u_axis, "u_axis")
     if sources is None:
         if axis is not None:
-            raise ValueError("u_axis: goes with `sources`")
+            raise ValueError("u_axis: requires `sources`")
         at, rows = None, np.arange(len(on), dtype=np.int32)
     else:
         at = places.points(sources, "sources", on, empty=True)
@@ -166,21 +178,24 @@ def local_maps(surface: Any, radius: Optional[float] = None, k: Optional[int] = 
 
 
 class LocalStroke(NamedTuple):
-    """The surroundings of a curve, nearest first."""
+    """The log map from a curve, for the rows within a radius of it, nearest first. Returned by `local_stroke`."""
 
-    rows: np.ndarray  #: (e,) int32
-    uv: np.ndarray  #: (e, 2) as of `stroke`, world units
-    distance: np.ndarray  #: (e,) from the curve, world units
-    points: np.ndarray  #: (k, 3) the curve as drawn, world units
-    length: float  #: world units
+    rows: np.ndarray  #: (e,) int32 rows within the radius
+    uv: np.ndarray  #: (e, 2) coordinates of these rows along and across the curve, as in `stroke`, world units
+    distance: np.ndarray  #: (e,) distances of these rows from the nearest sample of the curve, world units
+    points: np.ndarray  #: (k, 3) corners of the curve on the surface, world units
+    length: float  #: length of the curve, world units
 
 
 def local_stroke(surface: Any, points: Any, radius: float, *, closed: bool = False, shape: str = "line", margin: float = 2.0,
                  t_coef: float = 1.0, variant: str = "adaptive", progress: Progress = None) -> LocalStroke:
-    """`stroke` within a radius alone: time and memory of what lies there, however large the surface is.
+    """Coordinates along a curve, for the rows within a radius only.
 
-    points, closed, shape : as of `stroke`. radius, margin, t_coef, variant, progress : as of `local_maps`. Distances are those from
-        the nearest sample of the curve, which are half an edge apart.
+    Time and memory depend on this neighborhood, however large the surface is. Distances are measured from the nearest sample of
+    the curve; samples are half an edge apart.
+
+    surface, radius, margin, t_coef, variant, progress : as in `local_maps`.
+    points, closed, shape : as in `stroke`.
 
     >>> import ahm
     >>> near = ahm.local_stroke(ahm.shapes.plane(40, 40), [[10, 20, 0], [20, 20, 0]], radius=2.5)
@@ -188,7 +203,7 @@ def local_stroke(surface: Any, points: Any, radius: float, *, closed: bool = Fal
     >>> near.uv[above].round(3).tolist(), len(near.rows) < 100
     ([5.0, 2.0], True)
 
-    Raises ValueError naming argument, index and value.
+    Raises ValueError naming the argument, the index and the value.
     """
     on = as_body(surface)
     arguments.choice(shape, "shape", ("line", "circle"))

@@ -1,4 +1,4 @@
-"""Logarithmic maps by rows of the input, and the way back."""
+"""Logarithmic maps by rows of the input, and their inverse maps."""
 
 from __future__ import annotations
 
@@ -15,41 +15,43 @@ from ._surfaces import Surface
 
 
 class Status(enum.IntEnum):
-    """Why a row has coordinates, or has none: the values of `LogMap.status`."""
+    """Whether a row has coordinates, and if not why: the values of `LogMap.status`."""
 
-    ok = 0
-    disconnected = 1  #: in a component of the graph without a source
-    beyond_radius = 2  #: farther from the source than the requested radius
-    unreached = 3  #: so far that the heat has left the range of double precision, or the heat cancels
-    removed = 4  #: an input point that is no vertex of the graph
+    ok = 0  #: the row has coordinates
+    disconnected = 1  #: the row is in a component of the graph without a source
+    beyond_radius = 2  #: the row is farther from the source than the requested radius
+    unreached = 3  #: the row is so far away that its heat is below the range of double precision, or the heat cancels
+    removed = 4  #: the row has no vertex in the graph
 
 
 class MapSource(NamedTuple):
-    """Where a map starts."""
+    """The point where a map starts, and its axes. Returned by `LogMap.source`."""
 
-    position: Optional[np.ndarray]  #: (3,) in space, world units; of a graph the origin of a frame, None without
-    axes: Optional[np.ndarray]  #: (3, 3) u axis, v axis and normal in space; None without
-    row: Optional[int]  #: None where the source is no row
+    position: Optional[np.ndarray]  #: (3,) position in space, world units; on graphs the origin of the frame, None without frames
+    axes: Optional[np.ndarray]  #: (3, 3) u axis, v axis and normal in space; None without frames
+    row: Optional[int]  #: row of the source; None if the source is not a row
 
 
 class InversePoints(NamedTuple):
-    """What lies at coordinates (u, v); k of them, NaN and -1 where nothing does."""
+    """The points of the surface at k coordinates (u, v); NaN and -1 where there is none. Returned by `LogMap.inverse`."""
 
-    position: np.ndarray  #: (k, 3) on the flat triangle, world units
-    normal: np.ndarray  #: (k, 3) unit: those of the corners, interpolated
+    position: np.ndarray  #: (k, 3) positions on the flat triangles, world units
+    normal: np.ndarray  #: (k, 3) unit normals, interpolated from the corners of the triangle
     du: np.ndarray  #: (k, 3) derivative of the position by u
     dv: np.ndarray  #: (k, 3) derivative of the position by v
-    triangle: np.ndarray  #: (k, 3) int32 rows of the triangle
-    barycentric: np.ndarray  #: (k, 3)
+    triangle: np.ndarray  #: (k, 3) int32 rows of the corners of the triangle
+    barycentric: np.ndarray  #: (k, 3) barycentric coordinates in the triangle
 
     @property
     def valid(self) -> np.ndarray:
-        """(k,) bool: whether something lies there."""
+        """(k,) bool: whether a point of the surface has these coordinates."""
         return self.triangle[:, 0] >= 0
 
 
 class LogMap:
-    """A log map on the rows of the input: NaN exactly where `status` is not ok. Arrays are views, read-only, not copies.
+    """A log map: one entry per row of the input. Numbers are NaN exactly where `status` is not ok.
+
+    The arrays `uv`, `distance`, `spread`, `error_estimate` and `status` are read-only views, not copies.
 
     >>> import ahm
     >>> mesh = ahm.TriangleMesh(*ahm.shapes.plane(4, 3))
@@ -67,100 +69,106 @@ class LogMap:
 
     @property
     def _map(self) -> _core.Map:
-        """Out of a pickle it is made when it is first asked for."""
+        """The map of the C++ library. After unpickling, the first access computes it again."""
         if self._made is None:
             self._made = self._recipe.make(self._number)
         return self._made
 
     @property
     def surface(self) -> Surface:
-        """What the map is on."""
+        """The surface of the map."""
         return self._surface
 
     @property
     def uv(self) -> np.ndarray:
-        """(n, 2) coordinates phi in the source's frame, world units; (n, d) on grids and graphs of other dimensions."""
+        """(n, 2) coordinates (u, v) in the source's frame, world units; (n, d) on grids and graphs of other dimensions."""
         return self._map.uv()
 
     @property
     def distance(self) -> np.ndarray:
-        """(n,) geodesic distance from the source, world units: more accurate than |uv|; of an exact map |uv|. Of a stroke that
-        from the curve; where its coordinates are `positions`, from its nearest sample, a quarter of an edge off at most."""
+        """(n,) geodesic distance from the source, world units. More accurate than the length |uv|; for exact maps equal to it.
+
+        For a stroke, the distance from the curve. With user-defined `positions` it is the distance from the nearest sample of the
+        curve, with an error of at most a quarter of an edge."""
         return self._map.distance()
 
     @property
     def angle(self) -> np.ndarray:
-        """(n,) atan2(v, u), radians in (-pi, pi]."""
+        """(n,) direction of every row, seen from the source: atan2(v, u), radians in (-pi, pi]."""
         return self._map.angle()
 
     @property
     def spread(self) -> np.ndarray:
-        """(n,) standard deviation of the coordinates over the ways by which heat arrives, world units: about the distance
-        on the cut locus. NaN of a map made with spread=False."""
+        """(n,) standard deviation of the coordinates over the paths of the heat, world units. About the distance at the cut locus.
+
+        For polar and exact maps it is half of the longest jump to a neighbor. NaN if the map was computed with spread=False."""
         return self._map.spread()
 
     @property
     def error_estimate(self) -> Optional[np.ndarray]:
-        """(n,) estimate of |error of uv|, world units, of polar maps; None for heat and exact maps."""
+        """(n,) estimated length of the error of `uv`, world units, for polar maps. None for heat and exact maps."""
         found = self._map.error_estimate()
         return found if len(found) else None
 
     @property
     def status(self) -> np.ndarray:
-        """(n,) uint8, values of `Status`."""
+        """(n,) uint8, a value of `Status` for every row."""
         return self._map.status()
 
     @property
     def ok(self) -> np.ndarray:
-        """(n,) bool: status is ok."""
+        """(n,) bool: whether the row has coordinates (`status` is ok)."""
         return self.status == Status.ok
 
     @property
     def quality(self) -> np.ndarray:
-        """(n,) in (0, 1]: below 0.5 a vector is, as a rule, wrong by more than a tenth of its length. Computed anew each time.
+        """(n,) how reliable `uv` is, in (0, 1]. Below 0.5 its error usually exceeds a tenth of its length.
 
-        Raises InvalidArgument for a map made with spread=False.
+        Every access computes it again. Raises InvalidArgument for a map computed with spread=False.
         """
         return self._map.quality()
 
     @property
     def frames(self) -> np.ndarray:
-        """(n, d, d) the source's axes carried to every row: column a is source axis a in the frame of the row (Eq. 11, 12).
+        """(n, d, d) the source's axes, parallel transported to every row: column a is axis a in the frame of the row (Eq. 11, 12).
 
-        Raises InvalidArgument where the map was made with frames=False.
+        Raises InvalidArgument for a map computed with frames=False.
         """
         return self._map.frames()
 
     @property
     def axes(self) -> np.ndarray:
-        """(n, 2, 3) the source's u and v axis carried to every row, as vectors of space. Raises as `frames`."""
+        """(n, 2, 3) the source's u and v axis, parallel transported to every row, as vectors in space. Raises as `frames`."""
         return self._map.axes()
 
     @property
     def gradient(self) -> np.ndarray:
-        """(n, 3) unit vectors of space that point away from the source; 0 at the source. Raises as `frames`."""
+        """(n, 3) gradient of the distance: unit vectors in space that point away from the source; 0 at the source. Raises as
+        `frames`."""
         return self._map.gradient()
 
     @property
     def corner_uv(self) -> np.ndarray:
-        """(corners, 2) coordinates at every corner of every face, which may differ from corner to corner of a vertex where
-        the map is cut open along its cut locus: what textures need."""
+        """(corners, 2) coordinates (u, v) at every corner of every face, for textures.
+
+        Along the cut locus the map is cut open: corners at the same vertex may have different coordinates."""
         return self._map.corners()
 
     @property
     def source(self) -> MapSource:
-        """Where the map starts, and its axes."""
+        """The point where the map starts, and its axes."""
         return MapSource(*self._map.source())
 
     @property
     def method(self) -> str:
-        """"polar", "heat" or "exact"."""
+        """The method by which the map was computed: "polar", "heat" or "exact"."""
         return self._map.method
 
     def sample(self, points: Any) -> np.ndarray:
-        """(k, 2) coordinates at points of the surface: rows, positions (k, 3), (faces, barycentric), (edges, t).
+        """The coordinates (u, v) at k points of the surface, as an array (k, 2); NaN where the map is not ok.
 
-        NaN where the map is not ok. In the tangent planes of a cloud it takes a map with frames.
+        points : rows, positions (k, 3), `(faces, barycentric)`, `(edges, t)`. On a cloud, points that are not rows require a map
+            with frames.
 
         >>> import ahm
         >>> m = ahm.log_map(ahm.TriangleMesh(*ahm.shapes.plane(4, 3)), 0, u_axis=[1, 0, 0])
@@ -172,14 +180,14 @@ class LogMap:
         return self._map.sample(places.points(points, "points", self._surface, empty=True))[0]
 
     def inverse(self, uv: Any) -> InversePoints:
-        """What lies at coordinates `uv` (k, 2), world units; see `InverseMap`, which has options.
+        """The points of the surface at coordinates `uv` (k, 2), world units. `InverseMap` does the same with options.
 
         >>> import ahm
         >>> m = ahm.log_map(ahm.TriangleMesh(*ahm.shapes.plane(4, 3)), 0, u_axis=[1, 0, 0])
         >>> m.inverse([[1.25, 0.5], [-1, 0]]).position.round(9).tolist()
         [[1.25, 0.5, 0.0], [nan, nan, nan]]
 
-        Raises ValueError (shape; a map without frames; grids and graphs).
+        Raises ValueError (wrong shape; a map without frames; a map on a grid or a graph).
         """
         if self._inverse is None:
             self._inverse = InverseMap(self)
@@ -205,18 +213,20 @@ class LogMap:
 
 
 def _again(recipe: Any, number: int) -> LogMap:
-    """A map out of a pickle."""
+    """Unpickles a map."""
     recipe.expect(number)
     return LogMap(None, recipe, number)
 
 
 class InverseMap:
-    """From coordinates back to the surface, where the map has an inverse: from triangles that keep their orientation in the
-    plane, have corners to be trusted, and are not stretched beyond bounds.
+    """The inverse of a log map: from coordinates (u, v) to points of the surface.
 
-    map : a `LogMap` with frames, of a mesh or cloud.
-    max_stretch : triangles with an edge this many times longer or shorter in the plane than in space are left out; > 1.
-    min_quality : rows of a lower `LogMap.quality` are left out; 0: none.
+    It uses only triangles that keep their orientation in the plane, are stretched by at most `max_stretch`, and have corners of
+    sufficient quality.
+
+    map : a `LogMap` with frames, on a mesh or a cloud.
+    max_stretch : triangles with an edge longer or shorter in the plane than in space by more than this factor are left out; > 1.
+    min_quality : rows with a lower `LogMap.quality` are left out; 0: none.
 
     >>> import ahm
     >>> m = ahm.log_map(ahm.TriangleMesh(*ahm.shapes.plane(4, 3)), 0, u_axis=[1, 0, 0])
@@ -229,18 +239,18 @@ class InverseMap:
 
     def __init__(self, map: LogMap, *, max_stretch: float = 4.0, min_quality: float = 0.5) -> None:
         if not isinstance(map, LogMap):
-            raise TypeError(f"map: a LogMap is needed, not {type(map).__name__}")
+            raise TypeError(f"map: expected a LogMap, got {type(map).__name__}")
         self.map = map
         self._options = checked(max_stretch=max_stretch, min_quality=min_quality)
         self._core = _core.Inverse(map._map, self._options)
 
     @property
     def triangles(self) -> np.ndarray:
-        """(t, 3) int32 rows of the triangles that answer, nearest to the source first."""
+        """(t, 3) int32 rows of the triangles in use, nearest to the source first."""
         return self._core.triangles()
 
     def __call__(self, uv: Any) -> InversePoints:
-        """What lies at coordinates (k, 2), world units."""
+        """The points of the surface at coordinates `uv` (k, 2), world units."""
         return InversePoints(*self._core.at(arguments.floats(uv, "uv", (None, 2))))
 
     def __reduce__(self) -> tuple:

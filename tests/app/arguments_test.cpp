@@ -88,7 +88,7 @@ TEST_F(Arguments, UnknownOptionsAndMissingOnesAreUsageErrors) {
 
 TEST_F(Arguments, WrongValuesAreWrongCommandLines) {
   expect_refused(with({"--view", folder / "map.jpg"}), 2, "--view");
-  expect_refused(with({"--local"}), 2, "--local: needs --radius");
+  expect_refused(with({"--local"}), 2, "--local: requires --radius");
   expect_refused(with({"--strategy", "global", "--accuracy", "1e-3"}), 2, "--accuracy");
   expect_refused(with({"--method", "exact", "--tolerance", "0.5"}), 2, "--tolerance");
   expect_refused(with({"--sources", "nowhere.txt"}), 2, "--sources: there is no file 'nowhere.txt'");
@@ -151,7 +151,8 @@ TEST(FilesBesideTheInput, AreNotReplaced) {
   const std::string buffer = folder.write("of it.csv", "abc");
   const auto outcome = run({"logmap", scene, "--source", "0", "-o", buffer});
   EXPECT_EQ(outcome.status, 1);
-  EXPECT_NE(outcome.err.find("is the input file, or one that it names"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("would overwrite the input file, or a file that belongs to it"), std::string::npos)
+      << outcome.err;
   EXPECT_EQ(read_text(buffer), "abc");
 }
 

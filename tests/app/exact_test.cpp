@@ -157,7 +157,7 @@ TEST(PolarMethod, IsTheDefaultWhereTrianglesAgree) {
   EXPECT_EQ(map({"--backend", "pointcloud", "--method", "polar"}).at("method"), "polar");
   const Outcome outcome = run(with(words, {"--method", "polar", "--t-coef", "2"}));
   EXPECT_NE(outcome.status, 0);
-  EXPECT_NE(outcome.err.find("polar has no --t-coef"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("polar does not use --t-coef"), std::string::npos) << outcome.err;
 }
 
 TEST(PolarMethod, MakesAnAtlasAndACenter) {

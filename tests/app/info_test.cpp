@@ -218,7 +218,8 @@ TEST(Info, CountsWhatIsWrongWithAMesh) {
   const std::string bow = folder.write("bow.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv -1 0 0\nv -1 -1 0\nf 1 2 3\nf 1 4 5\n");
   EXPECT_EQ(info(bow).at("mesh").at("non_manifold_vertices"), 1);
   EXPECT_NE(
-      run({"info", bow}).out.find("1 vertex of several fans of faces; --non-manifold split cuts there: 1 vertex more"),
+      run({"info", bow})
+          .out.find("1 vertex with several fans of faces; --non-manifold split cuts the mesh there and adds 1 vertex"),
       std::string::npos);
   EXPECT_EQ(json.at("mesh").at("non_manifold_vertices"), 2);
   EXPECT_EQ(json.at("mesh").at("added_vertices"), 4);
@@ -262,13 +263,13 @@ TEST(Info, GuessesUnitsWhereTheFormatOrTheCoordinatesTell) {
   Folder folder;
   std::vector<Vec3> far = plane(10);
   for (Vec3& p : far) p = {432000 + 50 * p[0], 5412000 + 50 * p[1], p[2]};
-  EXPECT_EQ(info(folder.write("far.xyz", xyz(far))).at("unit_guess"), "metres");
+  EXPECT_EQ(info(folder.write("far.xyz", xyz(far))).at("unit_guess"), "meters");
   EXPECT_EQ(info(folder.write("near.xyz", xyz(plane(10)))).at("unit_guess"), nullptr);
   EXPECT_EQ(info(folder.write("part.stl",
                               "solid p\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 10 0 0\n"
                               "vertex 0 10 0\nendloop\nendfacet\nendsolid p\n"))
                 .at("unit_guess"),
-            "millimetres");
+            "millimeters");
 }
 
 TEST(Info, SpeaksOfMeshesToPeopleToo) {

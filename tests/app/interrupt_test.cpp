@@ -165,7 +165,7 @@ TEST(ScarceMemory, IsNotFilledByAStreamWithoutEnd) {
                               "'; echo $? > '" + (folder / "status") + "')";
   std::system(command.c_str());
   EXPECT_EQ(read_text(folder / "status"), "1\n");
-  EXPECT_NE(read_text(folder / "words").find("a third of the memory that is free"), std::string::npos)
+  EXPECT_NE(read_text(folder / "words").find("a third of the free memory"), std::string::npos)
       << read_text(folder / "words");
 }
 

@@ -63,7 +63,7 @@ TEST(LocalMapsCommand, SaysThatItsRadiusHoldsNothing) {
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     return outcome.err;
   };
-  EXPECT_NE(words("1e-3", "5").find("144 of 144 neighbourhoods hold their source alone"), std::string::npos);
+  EXPECT_NE(words("1e-3", "5").find("neighborhoods without neighbors: 144 of 144"), std::string::npos);
   EXPECT_EQ(words("1e-3", "1"), "");
   EXPECT_EQ(words("0.3", "5"), "");
 }

@@ -181,7 +181,7 @@ TEST(Mesh, OfTheSurroundingsKeepsAllFacesInItsOutputs) {
 }
 
 TEST(Mesh, HasNoSurroundingsWhereNoFaceIs) {
-  expect_refused(sheet(5) + "v 9 9 9\n", "no face comes within 0.15 of the source 25", {"--radius", "0.1", "--local"},
+  expect_refused(sheet(5) + "v 9 9 9\n", "no face is within 0.15 of the source 25", {"--radius", "0.1", "--local"},
                  "25");
 }
 

@@ -53,7 +53,7 @@ TEST(PathCommand, SaysThatPositionsLieFarOffTheSurface) {
     const Outcome outcome = run(command);
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_NE(outcome.err.find("0,200,300: 3"), std::string::npos) << command[0] << ": " << outcome.err;
-    EXPECT_NE(outcome.err.find("write blanks"), std::string::npos) << command[0] << ": " << outcome.err;
+    EXPECT_NE(outcome.err.find("separate them by blanks"), std::string::npos) << command[0] << ": " << outcome.err;
   }
   const Outcome near = run({"path", input, "--from", "0.1,0.1,-0.5", "--to", "7", "-o", output});
   EXPECT_EQ(near.err.find("off the surface"), std::string::npos) << near.err;
@@ -107,7 +107,7 @@ TEST(PathCommand, FindsAPathForEveryPairOfAFile) {
     if (!how.empty()) words.push_back(how);
     const Outcome outcome = run(words);
     ASSERT_EQ(outcome.status, 0) << outcome.err;
-    EXPECT_NE(outcome.err.find("1 of 5 pairs"), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("different components of the surface: 1 of 5"), std::string::npos) << outcome.err;
     const auto paths = read_json(folder / "paths.json").at("paths");
     const double expected[] = {std::sqrt(5.0), std::sqrt(2.0), 0, 1, 1};
     std::vector<double> walked(5, 0), last(5, 0);

@@ -218,7 +218,7 @@ TEST(StrokeCommand, WarnsOfACurveThatLeavesTheSurface) {
   const Outcome outcome =
       run({"stroke", folder.write("two.xyz", xyz(points)), "--curve", "1,0,0 2,0,0", "-o", folder / "stroke.csv"});
   EXPECT_EQ(outcome.status, 0) << outcome.err;
-  for (const std::string words : {"no shortest path", "does not connect their ends", "give more points"})
+  for (const std::string words : {"instead of a shortest path", "does not connect their ends", "add points"})
     EXPECT_NE(outcome.err.find(words), std::string::npos) << outcome.err;
 }
 
@@ -287,7 +287,7 @@ TEST(StrokeCommand, PositionsThatDoNotFitAreRefused) {
   EXPECT_EQ(refused({"--positions", "0,0 1,0", "--circle"}).status, 2);
   const Outcome still = refused({"--positions", "1,1 1,1"});
   EXPECT_EQ(still.status, 1);
-  EXPECT_NE(still.err.find("stands still"), std::string::npos) << still.err;
+  EXPECT_NE(still.err.find("does not advance"), std::string::npos) << still.err;
 }
 
 }  // namespace

@@ -133,7 +133,7 @@ TEST(NoisyCloud, IsSmoothedWithAWordUnlessThatIsTurnedOff) {
   EXPECT_EQ(map({"--smooth", "off"}).err.find("smoothed"), std::string::npos);
   const Outcome refused = map({"--smooth", "on"});
   EXPECT_EQ(refused.status, 2);
-  EXPECT_NE(refused.err.find("'on' is neither auto, off nor a number > 0"), std::string::npos) << refused.err;
+  EXPECT_NE(refused.err.find("'on' is not auto, off or a number > 0"), std::string::npos) << refused.err;
 }
 
 }  // namespace

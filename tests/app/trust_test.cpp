@@ -30,7 +30,7 @@ void for_each_map(const std::vector<Vec3>& points, const std::string& size, cons
   }
 }
 
-constexpr const char* warning = "the map is not to be trusted (quality below 0.5)";
+constexpr const char* warning = "the map is not reliable at ";
 
 TEST(Trust, MoreThanAFifthWithoutItIsAWarningOfEverySubcommandThatMaps) {
   for_each_map(torus(900).positions, "4", [](const std::string& name, const std::string& err) {

@@ -224,7 +224,7 @@ TEST(FarthestPoints, LeaveAFrontFromWhichCellsGoOn) {
     EXPECT_EQ(front.points(), count - 1);
     expect_fresh_cells(front, points);
     expect_error<InvalidArgument>([&] { farthest_points(front, Vertex{17}, 2); },
-                                  "'front' comes from " + std::to_string(count) + " points already");
+                                  "'front' already has points (" + std::to_string(count) + ")");
   }
 }
 

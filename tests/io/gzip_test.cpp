@@ -42,7 +42,7 @@ TEST_F(ReadGzip, JoinsMembersAndIgnoresZerosBehindThem) {
   const std::string halves = gzip(triangle.substr(0, 20)) + gzip(triangle.substr(20));
   EXPECT_EQ(read_bytes("m.off.gz", halves).points.size(), 3u);
   EXPECT_EQ(read_bytes("m.off.gz", halves + std::string(512, '\0')).points.size(), 3u);
-  expect_refused("m.off.gz", halves + "more", {"byte " + std::to_string(halves.size()), "goes on"});
+  expect_refused("m.off.gz", halves + "more", {"byte " + std::to_string(halves.size()), "continues"});
 }
 
 TEST_F(ReadGzip, GrowsBeyondWhatTheSizeOfTheFileSuggests) {
@@ -94,7 +94,7 @@ TEST_F(ReadGzip, RefusesMoreThanAThirdOfTheFreeMemory) {
       read(packed);
       ::_exit(1);
     } catch (const ResourceExhausted& error) {
-      ::_exit(std::string_view(error.what()).find("third of the memory") == std::string_view::npos ? 2 : 0);
+      ::_exit(std::string_view(error.what()).find("third of the free memory") == std::string_view::npos ? 2 : 0);
     } catch (...) {
       ::_exit(3);
     }

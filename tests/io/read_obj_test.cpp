@@ -41,7 +41,7 @@ TEST_F(ReadObj, RefusesVertexNumbersOutOfRange) {
 
 TEST_F(ReadObj, RefusesTruncatedAndShortStatements) {
   expect_refused("t.obj", points + "v 1 2\n", {"line 5", "v 1 2"});
-  expect_refused("t.obj", points + "f 1 2", {"line 5", "2 corners"});
+  expect_refused("t.obj", points + "f 1 2", {"line 5", "found 2"});
   expect_refused("t.obj", points + "f", {"line 5"});
   expect_refused("t.obj", "# nothing\n", {"no vertex"});
 }
@@ -79,7 +79,7 @@ TEST_F(ReadObj, SkipsStatementsItDoesNotKnowAndNamesThem) {
 
 TEST_F(ReadObj, RefusesLinesThatBeginWithNoWord) {
   for (const char* damage : {"0.5 1 2", "-1", "\x01\x02", "v1.5,2"})
-    expect_refused("d.obj", points + damage + "\n", {"line 5", "no OBJ keyword"});
+    expect_refused("d.obj", points + damage + "\n", {"line 5", "not an OBJ keyword"});
 }
 
 TEST_F(ReadObj, ReadsColorsBehindThePosition) {

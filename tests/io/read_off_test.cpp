@@ -28,7 +28,7 @@ TEST_F(ReadOff, ReadsNormalsOfNoff) {
   const Geometry n = read_bytes("n.off", "NOFF\n1 0 0\n1 2 3 0 0 1\n");
   EXPECT_EQ(n.normals[0], (Vec3{0, 0, 1}));
   EXPECT_TRUE(n.face_begin.empty());
-  expect_refused("n.off", "NOFF\n1 0 0\n1 2 3 0 0\n", {"line 3", "5 numbers"});
+  expect_refused("n.off", "NOFF\n1 0 0\n1 2 3 0 0\n", {"line 3", "6 numbers", "found 5"});
 }
 
 TEST_F(ReadOff, PassesNanThrough) {

@@ -196,7 +196,7 @@ TEST_F(ReadPcd, RefusesEveryTruncation) {
     }
   }
   const std::string text = doubles(2, "ascii") + "0 0 0\n1 1 ";
-  expect_refused("cut.pcd", text, {"line 13", "2 numbers"});
+  expect_refused("cut.pcd", text, {"line 13", "found 2"});
   expect_refused("cut.pcd", doubles(3, "ascii") + "0 0 0\n1 1 1", {"2 of 3"});
   expect_refused("cut.pcd", doubles(1, "ascii") + "0 0 0\n1 1 1\n", {"line 13"});
 }

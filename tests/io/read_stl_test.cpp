@@ -66,7 +66,7 @@ TEST_F(ReadStl, RefusesBrokenFacets) {
   expect_refused("f.stl", "solid\n" + facet("0 0 0", "1,5 0 0", "1 1 0") + "endsolid\n", {"line 5", "1,5"});
   expect_refused("f.stl",
                  "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nendloop\nendfacet\nendsolid\n",
-                 {"line 7", "2 vertices"});
+                 {"line 7", "found 2"});
   expect_refused("f.stl", "solid\nfacet normal 0 0 1\nvertex 0 0\n", {"line 3"});
   expect_refused("f.stl", "solid\ntriangle\nendsolid\n", {"line 2", "triangle"});
   expect_refused("f.stl", "solid\nendsolid\n", {"no triangles"});

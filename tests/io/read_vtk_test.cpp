@@ -206,7 +206,7 @@ TEST_F(ReadVtp, RefusesByNameWhatItCannotTrust) {
   expect_refused("z.vtp", foreign, {"'vtkLZ4_DataCompressor'"});
   expect_refused("u.vtu", whole, {".vtu", "save its surface as .vtp"});
   expect_refused("e.vtp", "<VTKFile type=\"PolyData\"><PolyData/></VTKFile>", {"no vertex"});
-  expect_refused("e.vtp", "<VTKFile type=\"PolyData\"><PolyData></VTKFile>", {"no XML", "byte"});
+  expect_refused("e.vtp", "<VTKFile type=\"PolyData\"><PolyData></VTKFile>", {"not valid XML", "byte"});
 }
 
 TEST_F(ReadVtp, JoinsPiecesAndIgnoresWhatNotAllOfThemHave) {
@@ -305,7 +305,7 @@ TEST_F(ReadVtk, RefusesByNameWhatItCannotTrust) {
   expect_refused("a.vtk", head + "POINTS 1 double\n0 0 1e400", {"'1e400'"});
   expect_refused("a.vtk", head + "POINTS 1 bit\n0 0 1", {"'bit'"});
   expect_refused("a.vtk", points + "POINT_DATA 3\nCOLOR_SCALARS c 3\n1 0 0 0 1 0 0 0 1\nPOINTS 1 double\n0 0 0\n",
-                 {"POINTS", "a second time"});
+                 {"POINTS", "twice"});
   expect_refused("a.vtk", head + "POINT_DATA 0\nSCALARS s int\nPOINTS 1 double\n0 0 0\n",
                  {"POINT_DATA", "before POINTS"});
   expect_refused("a.vtk", points + "POLYGONS 1 4\n3 0 1 3\n", {"polygon 0", "vertex number 3", "3 vertices"});

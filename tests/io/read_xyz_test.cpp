@@ -32,8 +32,8 @@ TEST_F(ReadXyz, WarnsOfOtherColumns) {
 }
 
 TEST_F(ReadXyz, RefusesLinesWithAnotherNumberOfColumns) {
-  expect_refused("r.xyz", "1 2 3\n4 5\n", {"line 2", "2 columns"});
-  expect_refused("r.xyz", "1 2 3\n4 5 6 7\n", {"line 2", "4 columns"});
+  expect_refused("r.xyz", "1 2 3\n4 5\n", {"line 2", "expected 3 columns", "found 2"});
+  expect_refused("r.xyz", "1 2 3\n4 5 6 7\n", {"line 2", "found 4"});
   expect_refused("r.xyz", "1 2\n", {"line 1", "three"});
   expect_refused("r.xyz", "# only this\n", {"no point"});
 }
@@ -64,7 +64,7 @@ TEST_F(ReadXyz, ReadsCommasAndSemicolons) {
   for (const char* text : {"1.5,2,3\n4,5,6\n", "1.5, 2, 3\n4,5, 6\n", "1.5 , 2 ,3\n4,5,6\n", "1.5;2;3\n4;5;6\n",
                            "1.5;2;3;\n4;5;6;\n", "1.5,2,3,\n4,5,6,\n"})
     EXPECT_EQ(read_bytes("s.xyz", text).points, (std::vector<Vec3>{{1.5, 2, 3}, {4, 5, 6}})) << text;
-  expect_refused("s.xyz", "1;2;3\n4,5,6\n", {"line 2", "1 columns"});
+  expect_refused("s.xyz", "1;2;3\n4,5,6\n", {"line 2", "found 1"});
   expect_refused("s.xyz", "1;;3\n", {"line 1", "''"});
 }
 
@@ -83,7 +83,7 @@ TEST_F(ReadXyz, ReadsNamesOfColumns) {
   EXPECT_EQ(read_bytes("n.txt", "// scanned\n//X,Y,Z,Rf,Gf,Bf\n// more\n1\n1,2,3,1,0.5,0\n").colors[0],
             (Color{255, 128, 0}));
   EXPECT_EQ(read_bytes("n.txt", "z y x\n1 2 3\n").points[0], (Vec3{3, 2, 1}));
-  expect_refused("n.asc", "//X Y Z R G B\n1 2 3\n", {"line 2", "3 columns"});
+  expect_refused("n.asc", "//X Y Z R G B\n1 2 3\n", {"line 2", "found 3"});
   expect_refused("n.asc", "//X Y Z\n", {"no point"});
   expect_refused("n.asc", "// only this\n", {"no point"});
 }
@@ -103,10 +103,10 @@ TEST_F(ReadXyz, TellsColorsFromNormalsInNineColumns) {
 
 TEST_F(ReadXyz, HoldsAnAnnouncedNumberOfPointsToItsWord) {
   EXPECT_EQ(read_bytes("c.xyz", "2\n1 2 3\n4 5 6\n").points.size(), 2u);
-  expect_refused("c.xyz", "3\n1 2 3\n4 5 6\n", {"line 3", "1 points before"});
+  expect_refused("c.xyz", "3\n1 2 3\n4 5 6\n", {"line 3", "missing: 1"});
   expect_refused("c.xyz", "1\n1 2 3\n4 5 6\n", {"line 3", "more points"});
   expect_refused("c.xyz", "9223372036854775807\n1 2 3\n", {"announced"});
-  expect_refused("c.xyz", "1 2 3\n2\n1 2 3\n", {"line 2", "1 columns"});
+  expect_refused("c.xyz", "1 2 3\n2\n1 2 3\n", {"line 2", "found 1"});
 }
 
 using ReadPts = Files;

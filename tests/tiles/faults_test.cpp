@@ -95,10 +95,10 @@ TEST(TileFaults, StepsGoInAnyOrderOfTilesAndAreDoneOnce) {
   TiledCloud expected(points, {.tile_points = 1500}), cloud(points, {.tile_points = 1500});
   expected.build();
   expect_error<InvalidArgument>([&] { tiles::run_step(cloud.tiles, "planes", 0); }, "planned");
-  expect_error<InvalidArgument>([&] { tiles::run_step(cloud.tiles, "index", {}); }, "tile 0 is not done");
+  expect_error<InvalidArgument>([&] { tiles::run_step(cloud.tiles, "index", {}); }, "run it for tile 0 first");
   expect_error<InvalidArgument>([&] { tiles::run_step(cloud.tiles, "sort", {}); }, "of a tile");
   expect_error<InvalidArgument>([&] { tiles::run_step(cloud.tiles, "sort", 99); }, "tile 99");
-  expect_error<InvalidArgument>([&] { tiles::run_step(cloud.tiles, "sorting", 0); }, "none of sort, index");
+  expect_error<InvalidArgument>([&] { tiles::run_step(cloud.tiles, "sorting", 0); }, "not one of sort, index");
   const std::size_t tiles = Manifest::read(cloud.tiles).tiles.size();
   for (const tiles::Step& step : tiles::steps()) {
     if (!step.per_tile) {
@@ -155,7 +155,7 @@ TEST(TileFaults, AKilledPlanIsPlannedAnew) {
   std::filesystem::remove(cloud.tiles / "manifest.json");  // written last
   tiles::plan_tiles(cloud.input, cloud.tiles, {.tile_points = 1500});
   EXPECT_TRUE(contents(cloud.tiles) == expected);
-  expect_error<InvalidArgument>([&] { tiles::plan_tiles(cloud.input, cloud.tiles, {}); }, "holds tiles already");
+  expect_error<InvalidArgument>([&] { tiles::plan_tiles(cloud.input, cloud.tiles, {}); }, "already contains tiles");
 }
 
 /// A limit of the file size stands for a full disk.
@@ -211,13 +211,13 @@ TEST(TileFaults, InputsThatCannotBeTiledAreRefused) {
   };
   expect_error<IoError>([&] { plan(); }, "points.ply");
   write_points(input, {{0, 0, 0}, {1, 0, 0}});
-  expect_error<InvalidGeometry>([&] { plan(); }, "2 finite points");
+  expect_error<InvalidGeometry>([&] { plan(); }, "2 finite point(s)");
   write_points(input, {{0, 0, 0}, {1, 0, 0}, {0, 0, 0}, {1, 0, 0}});
   expect_error<InvalidGeometry>([&] { plan(); }, "2 distinct");
   write_points(input, {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}});
   expect_error<InvalidGeometry>([&] { plan(); }, "lie on a line");
   write_points(input, {{0, 0, 0}, {1, 0, 0}, {0, NAN, 0}, {0, 1, 0}});
-  expect_error<InvalidGeometry>([&] { plan(); }, "1 points of the file are not finite");
+  expect_error<InvalidGeometry>([&] { plan(); }, "1 non-finite point(s) in the file");
   plan({.drop_non_finite = true});
   const auto text = folder.directory() / "points.xyz";
   const auto plan_text = [&](const std::string& lines, const tiles::TileOptions& options = {}) {
@@ -228,7 +228,7 @@ TEST(TileFaults, InputsThatCannotBeTiledAreRefused) {
   expect_error<IoError>([&] { plan_text("0 0 0\n0 1 x\n"); }, "line 2: 'x' is not a number");
   EXPECT_FALSE(std::filesystem::exists(tiles));
   expect_error<InvalidGeometry>([&] { plan_text("0 0 0\n0 1 nan\n1 0 0\n1 1 0\n"); },
-                                "1 points of the file are not finite");
+                                "1 non-finite point(s) in the file");
   plan_text("0 0 0\n0 1 nan\n1 0 0\n1 1 0\n", {.drop_non_finite = true});
   expect_error<InvalidArgument>([&] { plan_text("0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n"); }, "normals");
   plan_text("0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n", {.ignore_normals = true});
@@ -266,7 +266,7 @@ TEST(TilesProgram, NamesItsOwnOptions) {
   write_points(input, points);
   const std::string command =
       std::string(AHM_TILES_PROGRAM) + " plan " + input.string() + " -o " + (folder.directory() / "tiles").string();
-  EXPECT_EQ(said_by(command, 1), "ahm-tiles: error: 1 points of the file are not finite; --drop-nan leaves them out\n");
+  EXPECT_EQ(said_by(command, 1), "ahm-tiles: error: 1 non-finite point(s) in the file; drop them with --drop-nan\n");
 }
 
 /// OpenBLAS' own threads then never end. From 200 MB on the system's loader and they have what they need to begin with.

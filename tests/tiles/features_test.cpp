@@ -256,7 +256,7 @@ TEST(LocalFeatures, AreWrittenAsRowsOfTheInput) {
   expect_error<IoError>([&] { write_feature_rows(graph, folder, csv); }, "whole maps");
   std::filesystem::copy(Manifest::file(folder, "local", 0), Manifest::file(folder, "local", 1),
                         std::filesystem::copy_options::overwrite_existing);
-  expect_error<IoError>([&] { write_feature_rows(graph, folder, csv); }, "not one of these tiles");
+  expect_error<IoError>([&] { write_feature_rows(graph, folder, csv); }, "belongs to other tiles");
 }
 
 TEST(LocalFeatures, OfAnotherColumnAreNotTakenForThese) {
@@ -287,22 +287,22 @@ TEST(LocalFeatures, ThatAreNoneAreRefused) {
     write_local_maps(graph, 0, directory / "local", {.maps = {.radius = 3}, .features = names});
   };
   const auto mean = [&](const char* name) { make({"mean:" + (directory / name).string()}); };
-  expect_error<InvalidArgument>([&] { make({"cuont"}); }, "'cuont' is none of count, area");
-  expect_error<InvalidArgument>([&] { make({"area", "area"}); }, "'area' is asked for twice");
+  expect_error<InvalidArgument>([&] { make({"cuont"}); }, "'cuont' is not one of count, area");
+  expect_error<InvalidArgument>([&] { make({"area", "area"}); }, "'area' occurs twice");
   expect_error<IoError>([&] { make({"mean:"}); }, "cannot read ''");
   expect_error<IoError>([&] { mean("missing.npy"); }, "missing.npy");
-  expect_error<IoError>([&] { make({"mean:" + directory.string()}); }, "no .npy file");
-  expect_error<IoError>([&] { make({"mean:" + cloud.input.string()}); }, "no .npy file");
+  expect_error<IoError>([&] { make({"mean:" + directory.string()}); }, "not a .npy file");
+  expect_error<IoError>([&] { make({"mean:" + cloud.input.string()}); }, "not a .npy file");
   write_column(directory / "short.npy", std::vector<double>(899));
-  expect_error<InvalidArgument>([&] { mean("short.npy"); }, "899 values, the input of the tiles 900 rows");
+  expect_error<InvalidArgument>([&] { mean("short.npy"); }, "899 value(s); the input of the tiles has 900 rows");
   write_npy(directory / "cut.npy", "<f8", "(900,)", bytes_of(std::vector<double>(899)));
   expect_error<IoError>([&] { mean("cut.npy"); }, "cut short");
   write_npy(directory / "single.npy", "<f4", "(900,)", bytes_of(std::vector<double>(450)));
   expect_error<IoError>([&] { mean("single.npy"); }, "not float64");
   write_npy(directory / "table.npy", "<f8", "(450, 2)", bytes_of(std::vector<double>(900)));
-  expect_error<IoError>([&] { mean("table.npy"); }, "not one dimension");
+  expect_error<IoError>([&] { mean("table.npy"); }, "exactly one dimension");
   write_npy(directory / "huge.npy", "<f8", "(99999999999999999999999,)", {});
-  expect_error<IoError>([&] { mean("huge.npy"); }, "not one dimension");
+  expect_error<IoError>([&] { mean("huge.npy"); }, "exactly one dimension");
   EXPECT_FALSE(std::filesystem::exists(directory / "local" / "0.local"));
 }
 

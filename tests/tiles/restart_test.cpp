@@ -132,7 +132,7 @@ TEST(MapRestart, OfAnotherMapIsRefused) {
   std::vector<TiledMapOptions> others = all_options();
   others.erase(others.begin());  // that is the same map
   for (const TiledMapOptions& other : others)
-    expect_error<InvalidArgument>([&] { make(cloud, folder, other); }, "not finished, of other tiles, sources or");
+    expect_error<InvalidArgument>([&] { make(cloud, folder, other); }, "unfinished map of other tiles, sources or");
   const TiledGraph graph(cloud.tiles, 1 << 30);
   expect_error<InvalidArgument>([&] { write_log_map(graph, Source::at_vertex(Vertex{9}), folder, options); },
                                 "remove the folder");
@@ -161,7 +161,7 @@ TEST(MapRestart, FromADamagedCheckpointIsRefused) {
     flip_bit(state, at);
   }
   std::filesystem::copy(Manifest::file(folder, "front1", 0), state, std::filesystem::copy_options::overwrite_existing);
-  expect_error<IoError>([&] { make(cloud, folder, options); }, "not of this map");
+  expect_error<IoError>([&] { make(cloud, folder, options); }, "belongs to another map");
   std::filesystem::remove(state);
   expect_error<IoError>([&] { make(cloud, folder, options); }, state.string());
   std::ofstream(folder / "march.json") << "{\"version\": 1, \"iden";
@@ -210,7 +210,7 @@ TEST(MapRestart, OfAKilledProgramEndsWithTheSameBytes) {
   std::filesystem::rename(kept, tile);
   ASSERT_EQ(end_of(start(folder)), 0);
   std::ifstream said(log);
-  EXPECT_NE(std::string(std::istreambuf_iterator<char>(said), {}).find("went on after band"), std::string::npos);
+  EXPECT_NE(std::string(std::istreambuf_iterator<char>(said), {}).find("resumed after band"), std::string::npos);
   EXPECT_TRUE(contents(folder) == contents(whole));
 }
 

@@ -85,7 +85,7 @@ TEST(MarchSchedule, TilesAreDealtAsTheFrontComesToThem) {
   EXPECT_EQ(tiles::tile_distances(middles, near)[3], 5);
   // First 1, 3 and 6, then 2, 4 and 5, then 0.
   EXPECT_EQ(deal_tiles(tiles, Deal::arrival, 3, distances), (std::vector<int>{0, 0, 0, 1, 1, 2, 2}));
-  expect_error<InvalidArgument>([&] { deal_tiles(tiles, Deal::arrival, 3); }, "0 distances for 7 tiles");
+  expect_error<InvalidArgument>([&] { deal_tiles(tiles, Deal::arrival, 3); }, "found 0 for 7 tile(s)");
 }
 
 /// Mean positions of the vertices of tiles that begin at these.
@@ -108,7 +108,7 @@ TEST(MarchSchedule, KnowsTheMiddlesOfTiles) {
   // As it was before there were any.
   const std::vector<double> lengths{graph.mean_edge_length()};
   tiles::write_arrays(cloud.tiles / "components", "components", {tiles::array("edge_lengths", lengths)});
-  expect_error<IoError>([&] { graph.middles(); }, "deal them as cards");
+  expect_error<IoError>([&] { graph.middles(); }, "use --deal cards");
 }
 
 /// Any run of tiles that the front comes to one after the other is shared out to all.

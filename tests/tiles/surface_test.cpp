@@ -243,7 +243,7 @@ TEST(TiledSurface, RefusesWhatTilesCannotSay) {
   const auto surface = TriangleMeshSurface::build(mesh.positions, mesh.faces);
   const TiledSurface tiled(surface, 100);
   expect_error<InvalidArgument>([&] { tiles::tile_surface(surface, "mesh.ply", tiled.tiles, 100); },
-                                "holds tiles already");
+                                "already contains tiles");
   expect_error<InvalidArgument>([&] { tiles::tile_surface(surface, "mesh.ply", tiled.map, 10); }, "tile_points");
 }
 
@@ -304,7 +304,7 @@ TEST(TiledSurface, TakesTheOptionsOfMeshesAndTellsWarningsInWords) {
                        (folder.directory() / name).string() + " " + options,
                    status);
   };
-  EXPECT_NE(plan("tiles", "", 1).find("--non-manifold split cuts the mesh there"), std::string::npos);
+  EXPECT_NE(plan("tiles", "", 1).find("cut the mesh there with --non-manifold split"), std::string::npos);
   const std::string said = plan("tiles", "--non-manifold split --threads 1");
   EXPECT_NE(said.find("1 vertex that no face uses was left out"), std::string::npos) << said;
   EXPECT_NE(said.find("edges with more than two faces were cut"), std::string::npos) << said;
@@ -316,7 +316,7 @@ TEST(TiledSurface, TakesTheOptionsOfMeshesAndTellsWarningsInWords) {
       said_by(std::string(AHM_TILES_PROGRAM) + " plan " + (folder.directory() / "points.off").string() + " -o " +
                   (folder.directory() / "none").string() + " --no-flips",
               1);
-  EXPECT_NE(refused.find("--no-flips are for meshes"), std::string::npos) << refused;
+  EXPECT_NE(refused.find("--no-flips require a mesh"), std::string::npos) << refused;
 }
 
 TEST(TiledSurface, IsMadeByTheProgram) {
@@ -327,14 +327,14 @@ TEST(TiledSurface, IsMadeByTheProgram) {
   write_off(file, mesh);
   const std::string program = AHM_TILES_PROGRAM, plan = program + " plan " + file.string() + " -o " + tiles.string();
   for (const char* option : {" --k 60", " --drop-nan", " --ignore-normals"})
-    EXPECT_NE(said_by(plan + option, 1).find("--ignore-normals are for clouds"), std::string::npos) << option;
-  EXPECT_NE(said_by(plan + " --tile-points 200").find("tiles, built"), std::string::npos);
+    EXPECT_NE(said_by(plan + option, 1).find("--ignore-normals require a point cloud"), std::string::npos) << option;
+  EXPECT_NE(said_by(plan + " --tile-points 200").find("tile(s), built"), std::string::npos);
   said_by(program + " build " + tiles.string());
   said_by(program + " logmap " + tiles.string() + " -o " + map.string() + " --source 0");
   said_by(program + " rows " + tiles.string() + " " + map.string() + " -o " + csv.string());
   EXPECT_NE(
       said_by(program + " rows " + tiles.string() + " " + map.string() + " -o " + (tiles / "manifest.json").string(), 1)
-          .find("is in the folder"),
+          .find("is in a folder"),
       std::string::npos);
   EXPECT_EQ(csv_lines(csv, "row,u,v,distance,spread,status").size(), mesh.positions.size());
   std::ofstream(folder.directory() / "cloud.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\n";

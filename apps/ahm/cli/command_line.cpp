@@ -1,5 +1,5 @@
-// The one source that includes all of CLI11: CLI.hpp makes every file that includes it compile CLI11's help and configuration
-// anew, App.hpp does not.
+// Only this file includes all of CLI11: every file that includes CLI.hpp compiles the implementation of CLI11's help and
+// configuration again. The other files include App.hpp.
 #include "cli/command_line.hpp"
 
 #include <fmt/format.h>
@@ -21,46 +21,46 @@ namespace {
 
 constexpr const char* main_footer =
     "Examples:\n"
-    "  ahm info scan.ply                                    what is in the file, and what to run\n"
-    "  ahm logmap scan.ply --source 0 -o map.csv            coordinates u, v of every point, seen from point 0\n"
+    "  ahm info scan.ply                                    what the file contains, and what to run\n"
+    "  ahm logmap scan.ply --source 0 -o map.csv            coordinates u, v of every point relative to point 0\n"
     "  ahm logmap scan.ply --source 0 -o map.ply --view map.png\n"
     "\n"
-    "A logarithmic map flattens a surface around a source point: each point gets the direction and the length\n"
-    "of the shortest path that leads to it from the source. With --method heat coordinates behind holes\n"
-    "go straight on, as in the plane; polar and exact maps go around.\n"
+    "A logarithmic map flattens a surface around a source point: each point gets the direction and the length of the\n"
+    "shortest path from the source to it. Paths of polar and exact maps go around holes. With --method heat the\n"
+    "coordinates behind a hole are those of the plane.\n"
     "\n"
-    "ahm manual [SUBCOMMAND] prints a manual page, ahm completion bash|zsh|fish a script for the shell.\n"
+    "'ahm manual [SUBCOMMAND]' prints a manual page, 'ahm completion bash|zsh|fish' a script for the shell.\n"
     "\n"
-    "Exit status: 0 success, 1 the work failed, 2 the command line is wrong, 129, 130 or 143 interrupted.";
+    "Exit status: 0 success; 1 the command failed; 2 the command line is wrong; 129, 130 or 143 interrupted.";
 
 std::function<void()> print_later(std::string text) {
   return [text = std::move(text)] { print(text); };
 }
 
-/// `ahm completion SHELL` and `ahm manual [SUBCOMMAND]`, for those who install the program; null where neither is asked for.
+/// The action of `ahm completion SHELL` or `ahm manual [SUBCOMMAND]`; null for other command lines.
 std::function<void()> about_the_program(CLI::App& app, int argc, const char* const* argv) {
   const std::string_view word = argc > 1 ? argv[1] : "", what = argc > 2 ? argv[2] : "";
   if (argc > 3) return nullptr;
   if (word == "completion") {
     if (const auto text = completion(app, what)) return print_later(*text);
-    throw UsageError{"write ahm completion bash, zsh or fish"};
+    throw UsageError{"ahm completion: name a shell: bash, zsh or fish"};
   }
   if (word == "manual") {
     if (const auto text = manual(app, what, AHM_VERSION)) return print_later(*text);
-    throw UsageError{fmt::format("ahm manual: '{}' is no subcommand", what)};
+    throw UsageError{fmt::format("ahm manual: there is no subcommand '{}'", what)};
   }
   return nullptr;
 }
 
-/// CLI11 would take a forgotten subcommand for an unknown option.
+/// Checks that the command line starts with a subcommand. CLI11 would report a missing one as an unknown option.
 void check_first_word(const std::string& first, const std::vector<Subcommand>& commands) {
   std::vector<std::string> names;
   for (const Subcommand& command : commands) names.push_back(command.app->get_name());
   if (first.starts_with("-") || std::find(names.begin(), names.end(), first) != names.end()) return;
   const std::string last = names.back();
   names.pop_back();
-  throw UsageError{fmt::format("{}: write {} or {}\nRun 'ahm --help' for help.",
-                               first.empty() ? "a subcommand is needed" : "'" + first + "' is no subcommand",
+  throw UsageError{fmt::format("{}; use {} or {}\nRun 'ahm --help' for help.",
+                               first.empty() ? "a subcommand is required" : "'" + first + "' is not a subcommand",
                                fmt::join(names, ", "), last)};
 }
 
@@ -73,7 +73,7 @@ std::function<void()> parse_command_line(int argc, const char* const* argv) {
   app->footer(main_footer);
   app->require_subcommand(1);
   bool version = false;
-  app->add_flag("--version", version, "Print the versions of ahm, its libraries and the BLAS in use");
+  app->add_flag("--version", version, "Print the versions of ahm, its libraries and the BLAS");
   std::vector<Subcommand> commands;
   for (const AddSubcommand add : subcommands()) commands.push_back(add(*app));
   if (argc == 2 && std::string_view(argv[1]) == "--version") return print_later(versions_as_text());

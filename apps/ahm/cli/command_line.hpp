@@ -1,5 +1,5 @@
 /// \file
-/// From argv to what is to be done.
+/// Parses the command line.
 #pragma once
 
 #include <functional>
@@ -7,13 +7,12 @@
 
 namespace ahm::app {
 
-/// The command line cannot be understood: exit status 2.
+/// The command line is wrong: exit status 2.
 struct UsageError {
   std::string message;
 };
 
-/// Reads the command line; calling the result does what it asks for. All numbers are checked here, and every message
-/// names the option.
+/// Parses the command line and returns its action. Checks all numbers; every message names the option.
 /// @throws UsageError
 std::function<void()> parse_command_line(int argc, const char* const* argv);
 

@@ -59,7 +59,7 @@ namespace {
 
 constexpr std::string_view clear_line = "\r\x1b[K";
 
-/// The part that is done; for a stage that tells nothing, a block that runs to and fro.
+/// A progress bar. For a stage that does not report its progress, a block that moves back and forth.
 std::string bar(double fraction, double seconds) {
   constexpr int width = 30, block = 4;
   if (fraction > 0) {
@@ -102,8 +102,7 @@ void ProgressDisplay::clear() {
   stage_.clear();
 }
 
-// A painter of its own, because the longest stage, the factorization, reports nothing while it runs: the clock shows
-// life.
+// Draws in a thread of its own: the longest stage, the factorization, reports no progress, so only the clock changes.
 void ProgressDisplay::run(const std::stop_token& stop) {
   std::unique_lock lock(mutex_);
   while (!stop.stop_requested()) {

@@ -1,5 +1,5 @@
 /// \file
-/// The user's browser.
+/// Standard output, standard error, progress display and the user's browser.
 #pragma once
 
 #include <chrono>
@@ -13,43 +13,43 @@
 
 namespace ahm::app {
 
-/// Asks the desktop (xdg-open) to show an address. Whether it does is not known: not where there is no desktop.
-/// @return whether it could be asked
+/// Starts xdg-open, which opens an address in the user's browser.
+/// @return whether it was started; false without a desktop. Whether the browser opens is unknown
 bool open_browser(const std::string& address);
 
-/// Writes to standard error; failures are ignored, there is nobody left to tell.
+/// Writes to standard error. Ignores failures, which cannot be reported anywhere.
 void say(std::string_view text);
 
-/// "ahm: warning: <text>" on standard error.
+/// Writes "ahm: warning: <text>" to standard error.
 void warn(std::string_view text);
 
-/// Thrown by `print` when standard output has been closed by its reader. Not an `ahm::Error`: nothing is reported.
+/// Thrown by `print` when the reader has closed standard output. Not an `ahm::Error`, because it is not reported.
 struct BrokenPipe {};
 
 /// Writes to standard output and flushes.
 /// @throws BrokenPipe, IoError (a full disk)
 void print(std::string_view text);
 
-/// True when standard error is a terminal.
+/// Whether standard error is a terminal.
 bool is_terminal();
 
-/// Draws on standard error while it lives, and leaves the line empty. Draws nothing when standard error is no terminal,
-/// and nothing in the first second.
+/// Draws the progress on standard error during its lifetime, and clears the line at the end. Draws nothing in the first second, or if
+/// standard error is not a terminal.
 class ProgressDisplay {
  public:
-  /// @param shown  false: draws nothing, ever
+  /// @param shown  false: never draws
   explicit ProgressDisplay(bool shown = true);
   ~ProgressDisplay();
   ProgressDisplay(const ProgressDisplay&) = delete;
   ProgressDisplay& operator=(const ProgressDisplay&) = delete;
 
-  /// Names what is running; `fraction` is the part of it that is done.
+  /// Sets the stage that is running and the completed fraction of it.
   void update(std::string_view stage, double fraction);
 
-  /// Hands `update` to the library. The display must outlive the calls it is passed to.
+  /// Callbacks for the library that call `update`. The display must outlive the calls that use them.
   Progress progress();
 
-  /// Clears the line, so that something else can be printed, until the next update.
+  /// Clears the line for other output, until the next update.
   void clear();
 
  private:
@@ -62,7 +62,7 @@ class ProgressDisplay {
   std::string stage_;
   double fraction_ = 0;
   bool drawn_ = false;
-  std::jthread painter_;  // last: it uses the members above
+  std::jthread painter_;  // last, because the thread uses the members above
 };
 
 }  // namespace ahm::app

@@ -12,14 +12,14 @@
 namespace ahm::app {
 namespace {
 
-// Set before any handler is.
+// Messages, set before the handlers are installed.
 std::string interrupted, out_of_memory, unknown_failure;
 
 void tell(const std::string& message) {
   [[maybe_unused]] const ssize_t ignored = write(STDERR_FILENO, message.data(), message.size());
 }
 
-// Only calls that are allowed in a handler.
+// Makes only calls that are allowed in a signal handler.
 extern "C" void on_signal(int number) {
   io::remove_unfinished_files();
   tell(interrupted);
@@ -55,7 +55,8 @@ void install_interrupt_handling(const std::string& program) {
   sigemptyset(&action.sa_mask);
   for (const int number : ending) sigaddset(&action.sa_mask, number);
   for (const int number : ending)
-    if (number != SIGHUP || sigaction(number, nullptr, &before) != 0 || before.sa_handler != SIG_IGN)  // nohup
+    if (number != SIGHUP || sigaction(number, nullptr, &before) != 0 ||
+        before.sa_handler != SIG_IGN)  // ignored under nohup
       sigaction(number, &action, nullptr);
 }
 

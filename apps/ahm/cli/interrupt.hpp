@@ -1,18 +1,19 @@
 /// \file
-/// Ctrl-C, kill and exceptions that nobody can catch: no half-written file, gone within a second.
+/// Handles Ctrl-C, kill and uncaught exceptions: the process ends within a second and leaves no incomplete file.
 #pragma once
 
 #include <string>
 
 namespace ahm::app {
 
-/// On SIGINT, SIGTERM and (unless it is ignored, as under nohup) SIGHUP removes unfinished output files and ends the
-/// process with 128 + the signal's number; makes writing to a closed pipe, or past a limit of the file size, an error
-/// instead of a signal. Likewise, with status 1 and a message, where memory runs out in what may not throw. Call once, before any
-/// thread is started.
+/// Installs the handlers. Call once, before any thread is started.
 ///
-/// The process ends without unwinding: the longest stage, the factorization, cannot be interrupted.
-/// @param program  its name, as it appears in what is said then
+/// On SIGINT, SIGTERM and SIGHUP (unless ignored, as under nohup) the process removes unfinished output files and exits with 128 + the
+/// number of the signal. If memory runs out in a function that must not throw, it does the same with a message and status 1.
+/// Writing to a closed pipe, or beyond a file size limit, becomes an error instead of a signal.
+///
+/// The process ends without unwinding, because the longest stage, the factorization, cannot be interrupted.
+/// @param program  name of the program, for messages
 void install_interrupt_handling(const std::string& program);
 
 }  // namespace ahm::app

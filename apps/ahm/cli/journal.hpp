@@ -1,5 +1,5 @@
 /// \file
-/// Wall-clock seconds of the stages of a run.
+/// Stage times, progress and warnings of a run.
 #pragma once
 
 #include <fmt/format.h>
@@ -16,7 +16,7 @@
 
 namespace ahm::app {
 
-/// Stages in the order they ran. `start` ends the stage before.
+/// Wall-clock seconds of the stages in the order in which they ran. `start` ends the previous stage.
 class StageTimes {
  public:
   void start(std::string stage) {
@@ -65,7 +65,7 @@ class Journal {
     say(fmt::format("ahm: {:<8}{:8.3f} s   peak memory {}\n", stage, seconds, bytes_as_text(peak_rss_bytes())));
   }
 
-  /// A line of --verbose.
+  /// Prints a line with --verbose.
   void tell(const std::string& text) {
     finish();
     if (is_verbose()) say(fmt::format("ahm: {}\n", text));

@@ -1,5 +1,5 @@
 /// \file
-/// The program ahm: reads the command line, runs the command, turns exceptions into messages and exit statuses.
+/// The program ahm: parses the command line, runs the command, turns exceptions into messages and exit statuses.
 
 #include <sys/resource.h>
 #include <unistd.h>
@@ -24,15 +24,16 @@ using namespace ahm::app;
 
 constexpr int failed = 1;
 constexpr int usage = 2;
-constexpr const char* out_of_memory = "out of memory; thin the input (--voxel), lower --k, or use a machine with more";
+constexpr const char* out_of_memory =
+    "out of memory; thin the input (--voxel), lower --k, or use a machine with more memory";
 
-/// In pieces: there may be no memory for them in one.
+/// Prints an error in pieces, because there may be no memory to join them.
 int report(std::string_view message, int status) {
   for (const std::string_view part : {std::string_view("ahm: error: "), message, std::string_view("\n")}) say(part);
   return status;
 }
 
-/// The allocator keeps 64 MB of address space for every thread, which a limit of it has no room for.
+/// Makes all threads share one arena if address space is limited: the allocator reserves 64 MB of it for each arena.
 void share_one_arena_within_limits() {
 #ifdef M_ARENA_MAX
   if (rlimit limit{}; getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY) mallopt(M_ARENA_MAX, 1);
@@ -50,10 +51,10 @@ int run(int argc, char** argv) try {
   return failed;
 } catch (const std::bad_alloc&) {
   return report(out_of_memory, failed);
-} catch (const std::length_error&) {  // an array longer than any memory
+} catch (const std::length_error&) {  // an array too long for any memory
   return report(out_of_memory, failed);
 } catch (const ahm::Error& e) {
-  if (e.fault() == "pipe_closed") return failed;  // as for BrokenPipe
+  if (e.fault() == "pipe_closed") return failed;  // not reported, as for BrokenPipe
   return report(worded(e), failed);
 } catch (const std::exception& e) {
   return report(e.what(), failed);
@@ -63,6 +64,6 @@ int run(int argc, char** argv) try {
 
 }  // namespace
 
-// Everything is written by now. Ends without the destructors of libraries: OpenBLAS would wait for its threads, which never
-// end where address space does not suffice for their buffers.
+// All output is written when `run` returns. Exits without running the destructors of libraries: OpenBLAS would wait for its threads,
+// which never end if address space is too small for their buffers.
 int main(int argc, char** argv) { _exit(run(argc, argv)); }

@@ -39,7 +39,7 @@ void set_choices(const CLI::Option& option, const std::vector<std::string>& word
 
 namespace {
 
-/// The options with names; positionals are files.
+/// The options with a name. Positional arguments, which are files, are left out.
 std::vector<CLI::Option*> options_of(CLI::App& app) {
   return app.get_options([](CLI::Option* option) { return !option->get_lnames().empty(); });
 }
@@ -85,7 +85,7 @@ std::string bash(CLI::App& program) {
       fmt::join(names, " "), cases, choices);
 }
 
-/// _arguments reads brackets and colons of a description as its own.
+/// Escapes brackets and colons, which `_arguments` would interpret.
 std::string for_zsh(const std::string& text) {
   std::string result;
   for (char c : text) result += (c == '[' || c == ']' || c == ':' ? "\\" : "") + std::string(1, c);
@@ -151,7 +151,7 @@ std::optional<std::string> completion(CLI::App& program, std::string_view shell)
 
 namespace {
 
-/// Text that roff prints as it is: no escapes, no requests, hyphens that can be copied.
+/// Text that roff prints unchanged: escapes and requests are quoted, and hyphens can be copied.
 std::string plain(const std::string& text) {
   std::string result;
   bool line_begins = true;
@@ -168,7 +168,7 @@ std::string plain(const std::string& text) {
   return result;
 }
 
-/// Lines that stay as they are.
+/// A block in which roff does not fill lines.
 std::string verbatim(const std::string& text) { return ".nf\n" + plain(text) + "\n.fi\n"; }
 
 std::string entry(const CLI::Option& option) {

@@ -1,5 +1,5 @@
 /// \file
-/// What manual pages and completions read of the option tables that --help prints.
+/// Manual pages and shell completions, generated from the option tables that --help prints.
 #pragma once
 
 #include <CLI/App.hpp>
@@ -12,7 +12,7 @@ namespace ahm::app {
 
 std::vector<CLI::App*> subcommands_of(CLI::App& program);
 
-/// -s, --source: as they are written; none of a positional argument.
+/// The names of an option with their hyphens, such as -s, --source; empty for a positional argument.
 std::vector<std::string> names_of(const CLI::Option& option);
 
 /// The first line of an option's or subcommand's description.
@@ -21,14 +21,15 @@ std::string first_line(const std::string& description);
 /// Whether a value follows the option.
 bool takes_value(const CLI::Option& option);
 
-/// The words that an option takes; empty: any text. CLI11 has no place for them that --help does not print.
+/// The words that an option accepts; empty: any text. They are stored here because CLI11 would print them in --help.
 const std::vector<std::string>& choices_of(const CLI::Option& option);
 void set_choices(const CLI::Option& option, const std::vector<std::string>& words);
 
+/// The completion script for a shell.
 /// @param shell  bash, zsh or fish; null for any other
 std::optional<std::string> completion(CLI::App& program, std::string_view shell);
 
-/// The page of a subcommand, in roff, or that of the program where `subcommand` is empty; null where there is none of this name.
+/// The manual page of a subcommand in roff, or of the program if `subcommand` is empty; null for an unknown subcommand.
 std::optional<std::string> manual(CLI::App& program, std::string_view subcommand, const std::string& version);
 
 }  // namespace ahm::app

@@ -21,10 +21,10 @@ std::string one_of(const std::vector<std::string>& names) {
 }
 
 std::string input_help() {
-  return fmt::format("File to read, or - for standard input: {}", fmt::join(io::extensions(io::Use::read), " "));
+  return fmt::format("Input file, or - for standard input. Formats: {}", fmt::join(io::extensions(io::Use::read), " "));
 }
 
-/// Names of formats, and the extension that is found.
+/// Parses the name of a format into its extension.
 ChoiceOf<std::string> format_parser(io::Use use) {
   std::vector<std::pair<std::string, std::string>> names;
   for (const std::string& extension : io::extensions(use)) names.emplace_back(extension.substr(1), extension);
@@ -33,17 +33,17 @@ ChoiceOf<std::string> format_parser(io::Use use) {
 
 void add_input_format(CLI::App& app, InputOptions& o) {
   add_parsed(app, "--input-format", o.format, format_parser(io::Use::read), "NAME",
-             "Of INPUT, whatever its name: ply, xyz, ... (default: by the name, of - by the first bytes)");
+             "Format of INPUT: ply, xyz, ... (default: from the file name; for -, from the first bytes)");
 }
 
-/// None: automatic, 0: off.
+/// The radius of smoothing; none: automatic, 0: off.
 std::optional<double> parse_smoothing(const std::string& text) {
   if (text == "auto") return {};
   if (text == "off") return 0.0;
   try {
     return parse_positive(text);
   } catch (const std::invalid_argument&) {
-    throw std::invalid_argument("'" + text + "' is neither auto, off nor a number > 0");
+    throw std::invalid_argument("'" + text + "' is not auto, off or a number > 0");
   }
 }
 
@@ -55,7 +55,7 @@ std::function<Index(const std::string&)> integer_parser(std::int64_t low, std::i
 
 std::string Choice::operator()(const std::string& text) const {
   if (std::ranges::find(words, text) == words.end())
-    throw std::invalid_argument(fmt::format("'{}' is none of {}", text, fmt::join(words, ", ")));
+    throw std::invalid_argument(fmt::format("'{}' is not one of {}", text, fmt::join(words, ", ")));
   return text;
 }
 
@@ -84,8 +84,8 @@ void add_sources(CLI::App& app, std::vector<SourceSpec>& sources) {
     };
     app.add_option_function<std::vector<std::string>>(names, append, help)->type_name(type)->allow_extra_args(false);
   };
-  add("-s,--source", "SPEC", one, "Where the map starts, see below; may be given several times");
-  add("--sources", "SOURCES", parse_sources, "More of them: a list, or a file");
+  add("-s,--source", "SPEC", one, "Source of the map, see below; repeat it for several maps");
+  add("--sources", "SOURCES", parse_sources, "More sources: list or file, see below");
 }
 
 CLI::Option* add_u_axis(CLI::App& app, SourceOptions& o) {
@@ -95,9 +95,9 @@ CLI::Option* add_u_axis(CLI::App& app, SourceOptions& o) {
         return text == "curvature" ? UAxis{true, {}} : UAxis{false, parse_direction(text)};
       },
       "X,Y,Z|curvature",
-      "Direction of the u axis, projected to the surface (default: chosen by the backend): at least a\n"
-      "degree from the normal, 5 where normals are estimated. Or\n"
-      "curvature: where the surface bends most, which planes and spheres do nowhere");
+      "Direction of the u axis, a vector in space that is projected to the surface (default: chosen by the\n"
+      "backend). It must be at least 1 degree from the normal, 5 if normals are estimated.\n"
+      "curvature: the direction in which the surface bends most (not on planes and spheres)");
 }
 
 CLI::Option* add_min_quality(CLI::App& app, double& min_quality) {
@@ -108,7 +108,7 @@ CLI::Option* add_min_quality(CLI::App& app, double& min_quality) {
         if (value > 1) throw std::invalid_argument(fmt::format("'{}' is greater than 1", text));
         return value;
       },
-      "Q", "Trust vertices of this quality and above, in (0, 1] (default 0.5)");
+      "Q", "Use only vertices with at least this quality, in (0, 1] (default 0.5)");
 }
 
 void add_input(CLI::App& app, InputOptions& o) {
@@ -124,64 +124,66 @@ void add_inputs(CLI::App& app, InputOptions& o, std::vector<std::string>& paths)
 CLI::Option* add_backend(CLI::App& app, InputOptions& o) {
   std::vector<std::string> names;
   for (const Backend& backend : backends()) names.emplace_back(backend.name);
-  const std::string help = "auto (default): by the faces of INPUT; " + one_of(names);
+  const std::string help = "Kind of surface: auto (default: chosen from the faces of INPUT), " + one_of(names);
   names.insert(names.begin(), "auto");
   return add_parsed(app, "--backend", o.backend, choice(names), "NAME", help);
 }
 
 CLI::Option* add_drop_nan(CLI::App& app, InputOptions& o) {
   return app.add_flag("--drop-nan", o.drop_nan,
-                      "Drop points with nan or infinite coordinates instead of refusing them");
+                      "Drop points with NaN or infinite coordinates (default: stop with an error)");
 }
 
 CLI::Option* add_non_manifold(CLI::App& app, InputOptions& o) {
-  return add_parsed(app, "--non-manifold", o.non_manifold, choice({"error", "split"}), "HOW",
-                    "Edges of more than two faces and pinched vertices: error (default) or split, cutting there");
+  return add_parsed(
+      app, "--non-manifold", o.non_manifold, choice({"error", "split"}), "HOW",
+      "Edges with more than two faces, and vertices where surfaces touch: error (default), or split the mesh there");
 }
 
 void add_cloud_options(CLI::App& app, InputOptions& o) {
   const char* group = "Point clouds";
   add_parsed(app, "--voxel", o.voxel, parse_positive, "SIZE",
-             "Keep one point per cube of this edge length first, and the rows that are named")
+             "Thin the cloud to one point per cube of this edge length; rows named in the command are kept")
       ->group(group);
-  app.add_flag("--outliers", o.outliers, "Remove statistical outliers first")->group(group);
+  app.add_flag("--outliers", o.outliers, "Remove statistical outliers before the map")->group(group);
   add_drop_nan(app, o)->group(group);
-  add_parsed(app, "--k", o.k, integer_parser(3), "N", "Neighbours per point, at least 3 (default 30)")->group(group);
+  add_parsed(app, "--k", o.k, integer_parser(3), "N", "Neighbors per point, at least 3 (default 30)")->group(group);
   add_parsed(app, "--knn", o.knn, choice({"nanoflann", "flann", "pcl"}), "NAME",
-             "Neighbour search: nanoflann (default), flann or pcl")
+             "Library of the neighbor search: nanoflann (default), flann or pcl")
       ->group(group);
   add_normals(app, o)->group(group);
   add_parsed(app, "--smooth", o.smooth, parse_smoothing, "auto|off|RADIUS",
-             "Smooth the points before the map: auto (default) where there is noise, off, or everywhere\n"
-             "over neighbourhoods of this radius")
+             "Smooth the points before the map: auto (default: only where the cloud is noisy), off, or all points\n"
+             "over neighborhoods of this radius")
       ->group(group);
 }
 
 CLI::Option* add_normals(CLI::App& app, InputOptions& o) {
-  return add_parsed(app, "--normals", o.normals, choice({"auto", "oriented", "unoriented", "estimate"}), "HOW",
-                    "Normals of INPUT: auto (default) judges their signs, oriented trusts them, unoriented\n"
-                    "ignores the signs, estimate ignores the normals");
+  return add_parsed(
+      app, "--normals", o.normals, choice({"auto", "oriented", "unoriented", "estimate"}), "HOW",
+      "Use of the normals in INPUT: auto (default) checks their signs, oriented uses the signs unchecked,\n"
+      "unoriented ignores the signs, estimate ignores the normals");
 }
 
 void add_local(CLI::App& app, InputOptions& o, const std::string& radius) {
   app.add_flag("--local", o.around_source,
                radius +
-                   ": build the graph of the surroundings of the source only,\n"
-                   "fast on huge scans and meshes; the diffusion time is then that of the surroundings, and the noise\n"
-                   "of a cloud, which decides what is connected");
+                   ": build the graph only around the source. Fast on very large inputs.\n"
+                   "The diffusion time, and the noise of a cloud, which decides what is connected, are then measured\n"
+                   "around the source only");
 }
 
 void add_mesh_options(CLI::App& app, InputOptions& o) {
   const char* group = "Triangle meshes";
   app.add_flag_callback(
          "--no-flips", [&o] { o.flips = false; },
-         "Keep the edges as they are instead of flipping to intrinsic Delaunay, for comparison: distances are\n"
-         "those of heat, not around holes, and quality tells less")
+         "Do not flip edges to the intrinsic Delaunay triangulation; for comparisons. Distances are then those of\n"
+         "the heat, which do not go around holes, and quality is less reliable")
       ->group(group);
   add_non_manifold(app, o)->group(group);
   add_parsed(app, "--discretization", o.discretization, choice({"auto", "polygons", "refined"}), "NAME",
-             "polygons: every face one cell, refined: a virtual vertex in every face and intrinsic\n"
-             "triangles. auto (default): refined, or polygons where a face is twisted")
+             "auto (default): refined, or polygons if a face is twisted. polygons: one cell per face.\n"
+             "refined: intrinsic triangles, with an additional vertex in every face")
       ->group("Polygon meshes");
   add_repair_options(app, o);
 }
@@ -196,33 +198,33 @@ void add_repair_options(CLI::App& app, InputOptions& o) {
            if (reach) o.repair.weld = reach;
            o.non_manifold = "split";
          },
-         "All of these, with --weld 0 where no other is given, and --non-manifold split; rows and results stay\n"
-         "those of INPUT")
+         "All repairs below and --non-manifold split; --weld is 0 unless set. Results keep the rows of INPUT")
       ->group(group);
   const auto parse_reach = [](const std::string& text) { return text == "0" ? 0.0 : parse_positive(text); };
   add_parsed(app, "--weld", o.repair.weld, parse_reach, "EPS",
-             "Join vertices at most EPS apart, 0: at equal positions; drop the faces that collapse")
+             "Join vertices at most EPS apart (0: at equal positions), and drop the faces that collapse")
       ->group(group);
   app.add_flag("--drop-degenerate", o.repair.drop_degenerate,
-               "Drop faces that use a vertex twice, have fewer than three, or one that is not finite")
+               "Drop faces with fewer than three vertices, a repeated vertex, or a vertex that is not finite")
       ->group(group);
-  app.add_flag("--drop-duplicates", o.repair.drop_duplicates, "Of faces with the same vertices keep the first")
+  app.add_flag("--drop-duplicates", o.repair.drop_duplicates, "Keep only the first of the faces with the same vertices")
       ->group(group);
-  app.add_flag("--orient", o.repair.orient, "Turn faces over so that closed parts look outwards")->group(group);
+  app.add_flag("--orient", o.repair.orient, "Flip faces so that neighbors agree and closed parts face outward")
+      ->group(group);
 }
 
 CLI::Option* add_method(CLI::App& app, SolveOptions& o, std::vector<Method> methods, bool chosen) {
   if (chosen) o.method.reset();
   app.parse_complete_callback([&app, &o] {
     if (o.tolerance > 0 && o.method != Method::exact)
-      throw CLI::ValidationError("--tolerance", "belongs to --method exact");
+      throw CLI::ValidationError("--tolerance", "requires --method exact");
     if (o.method == Method::heat) return;
     for (const char* name : {"--variant", "--strategy", "--t-coef", "--ordering", "--accuracy", "--estimate"}) {
       const CLI::Option* option = app.get_option_no_throw(name);
       if (option == nullptr || option->count() == 0) continue;
       if (o.method)
-        throw CLI::ValidationError("--method",
-                                   fmt::format("{} has no {}: that belongs to heat", to_string(*o.method), name));
+        throw CLI::ValidationError("--method", fmt::format("{} does not use {}; leave it out, or use --method heat",
+                                                           to_string(*o.method), name));
       o.method = Method::heat;
       return;
     }
@@ -232,16 +234,17 @@ CLI::Option* add_method(CLI::App& app, SolveOptions& o, std::vector<Method> meth
   for (const Method method : methods) choices.emplace_back(to_string(method), method);
   const auto offers = [&](Method method) { return std::ranges::find(methods, method) != methods.end(); };
   std::string help =
-      chosen
-          ? "auto (default): polar on meshes and on clouds with little noise; else, and with options of heat, heat.\n"
-          : "";
+      chosen ? "auto (default): polar on meshes and on clouds with little noise, otherwise heat. Options of the heat\n"
+               "method select heat.\n"
+             : "";
   if (offers(Method::polar))
     help +=
-        "polar: length and direction of the shortest path, by a front; right to a few percent,\n"
-        "and nothing is factored.\n";
-  help += fmt::format("heat{}: the affine heat method, smooth across noise", chosen ? "" : " (default)");
+        "polar: length and direction of the shortest path, computed by a wavefront; errors of a few percent,\n"
+        "no factorization.\n";
+  help += fmt::format("heat{}: the affine heat method, smooth on noisy surfaces", chosen ? "" : " (default)");
   if (offers(Method::exact))
-    help += ".\nexact: straight lines over the faces of a mesh, best on coarse and sharp-edged ones, and around holes";
+    help +=
+        ".\nexact: straight lines over the faces of a mesh; best on coarse and sharp-edged meshes, and around holes";
   return add_parsed(app, "--method", o.method, choice_of<std::optional<Method>>(choices), "NAME", help);
 }
 
@@ -251,9 +254,10 @@ CLI::Option* add_tolerance(CLI::App& app, SolveOptions& o) {
     if (value > 0.1) throw std::invalid_argument(fmt::format("'{}' is greater than 0.1", text));
     return value;
   };
-  return add_parsed(app, "--tolerance", o.tolerance, parse, "R",
-                    "With --method exact: distances may be off by R times their length, at most 0.1; nearly linear\n"
-                    "time, many times less on large smooth meshes. Default: exact");
+  return add_parsed(
+      app, "--tolerance", o.tolerance, parse, "R",
+      "For --method exact: largest relative error of distances, at most 0.1 (default: exact to rounding).\n"
+      "Takes nearly linear time, much less on large smooth meshes");
 }
 
 CLI::Option* add_variant(CLI::App& app, SolveOptions& o) {
@@ -270,12 +274,12 @@ CLI::Option* add_strategy(CLI::App& app, SolveOptions& o) {
   return add_parsed(
       app, "--strategy", o.strategy,
       choice_of<Strategy>({{"auto", Strategy::automatic}, {"global", Strategy::global}, {"march", Strategy::march}}),
-      "NAME", "auto (default), global: one factorization, or march: band by band, any size and distance");
+      "NAME", "auto (default); global: one factorization; march: band after band outward, for any size and distance");
 }
 
 CLI::Option* add_t_coef(CLI::App& app, SolveOptions& o) {
   return add_parsed(app, "--t-coef", o.t_coef, parse_positive, "T",
-                    "Diffusion time in squared mean edge lengths, > 0 (default 1); larger is smoother");
+                    "Diffusion time in squared mean edge lengths, > 0 (default 1); larger values give smoother maps");
 }
 
 CLI::Option* add_threads(CLI::App& app, InputOptions& graph, SolveOptions* maps) {
@@ -284,7 +288,7 @@ CLI::Option* add_threads(CLI::App& app, InputOptions& graph, SolveOptions* maps)
     if (maps != nullptr) maps->threads = threads;
     return threads;
   };
-  return add_parsed(app, "--threads", graph.threads, parse, "N", "0 (default): one per core");
+  return add_parsed(app, "--threads", graph.threads, parse, "N", "Number of threads; 0 (default): one per core");
 }
 
 void add_graph_options(CLI::App& app, InputOptions& input, SolveOptions& solve) {
@@ -298,21 +302,22 @@ void add_graph_options(CLI::App& app, InputOptions& input, SolveOptions& solve) 
 
 CLI::Option* add_output(CLI::App& app, OutputOptions& o) {
   app.add_flag("--no-overwrite", o.keep_existing,
-               "Refuse to replace files that exist (default: replaced when complete)");
+               "Do not replace existing files (default: replace them when the new files are complete)");
   return add_parsed(
       app, "-o,--output", o.output,
       [](const std::string& text) { return text == "-" ? standard_output : non_empty(text); }, "OUTPUT",
-      "File to write, see below");
+      "Output file, see below");
 }
 
 CLI::Option* add_table_output(CLI::App& app, OutputOptions& o) {
   add_parsed(app, "--format", o.format, format_parser(io::Use::write), "NAME",
-             "Of OUTPUT, whatever its name: csv, jsonl, ply, ... (default: by the name, of - csv)");
-  return add_output(app, o)->description("File to write, see below; - for standard output");
+             "Format of OUTPUT: csv, jsonl, ply, ... (default: from the file name; for -, csv)");
+  return add_output(app, o)->description("Output file, see below; - for standard output");
 }
 
 CLI::Option* add_json(CLI::App& app, OutputOptions& o) {
-  return add_parsed(app, "--json", o.json, non_empty, "FILE|-", "Write a summary for programs; -: to standard output");
+  return add_parsed(app, "--json", o.json, non_empty, "FILE|-",
+                    "Write a summary as JSON to FILE, or to standard output (-)");
 }
 
 CLI::Option* add_view(CLI::App& app, OutputOptions& o) {
@@ -322,7 +327,7 @@ CLI::Option* add_view(CLI::App& app, OutputOptions& o) {
       throw std::invalid_argument(fmt::format("'{}' must end in .png or .html", text));
     return text;
   };
-  return add_parsed(app, "--view", o.view, parse, "FILE", "Draw the result: .png or .html");
+  return add_parsed(app, "--view", o.view, parse, "FILE", "Write a picture of the result: .png or .html");
 }
 
 void add_verbosity(CLI::App& app, Verbosity& verbosity, const std::string& group) {
@@ -330,7 +335,7 @@ void add_verbosity(CLI::App& app, Verbosity& verbosity, const std::string& group
          "--verbose", [&] { verbosity = Verbosity::verbose; }, "Print the time of each stage and the peak memory")
       ->group(group);
   app.add_flag_callback(
-         "--quiet", [&] { verbosity = Verbosity::quiet; }, "Print errors only, no summary and no warnings")
+         "--quiet", [&] { verbosity = Verbosity::quiet; }, "Print errors only: no summary, no warnings")
       ->group(group);
 }
 

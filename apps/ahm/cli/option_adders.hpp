@@ -17,8 +17,7 @@
 
 namespace ahm::app {
 
-/// Adds an option whose text a parser of ours turns into a value: CLI11's own takes nan, inf and hexadecimal for
-/// numbers.
+/// Adds an option with its own parser. CLI11's parser accepts nan, inf and hexadecimal numbers.
 template <class Value, class Parse>
 CLI::Option* add_parsed(CLI::App& app, const std::string& name, Value& value, const Parse& parse,
                         const std::string& type, const std::string& help) {
@@ -43,13 +42,13 @@ std::function<Index(const std::string&)> integer_parser(std::int64_t low,
                                                         std::int64_t high = std::numeric_limits<Index>::max());
 std::string non_empty(const std::string& text);
 
-/// A parser of one of some words.
+/// A parser that accepts one of several words.
 struct Choice {
   std::vector<std::string> words;
   std::string operator()(const std::string& text) const;
 };
 
-/// Words that stand for values.
+/// A parser that turns words into values.
 template <class Value>
 struct ChoiceOf {
   std::vector<std::string> words;
@@ -70,51 +69,52 @@ ChoiceOf<Value> choice_of(const std::vector<std::pair<std::string, Value>>& allo
 }
 
 CLI::Option* add_source(CLI::App& app, SourceOptions& o, const std::string& help);
-/// --source, which may be repeated, and --sources, which fill one list.
+/// Adds --source, which may be repeated, and --sources. Both append to one list.
 void add_sources(CLI::App& app, std::vector<SourceSpec>& sources);
 CLI::Option* add_u_axis(CLI::App& app, SourceOptions& o);
 CLI::Option* add_min_quality(CLI::App& app, double& min_quality);
 
-/// INPUT, --input-format
+/// Adds INPUT and --input-format.
 void add_input(CLI::App& app, InputOptions& o);
-/// The same for several files.
+/// Adds INPUT for several files, and --input-format.
 void add_inputs(CLI::App& app, InputOptions& o, std::vector<std::string>& paths);
 CLI::Option* add_backend(CLI::App& app, InputOptions& o);
 CLI::Option* add_drop_nan(CLI::App& app, InputOptions& o);
 CLI::Option* add_non_manifold(CLI::App& app, InputOptions& o);
-/// How points become a graph: --voxel, --outliers, --drop-nan, --k, --knn, --normals, --smooth.
+/// Adds the options for building a graph from points: --voxel, --outliers, --drop-nan, --k, --knn, --normals, --smooth.
 void add_cloud_options(CLI::App& app, InputOptions& o);
 CLI::Option* add_normals(CLI::App& app, InputOptions& o);
-/// --local. @param radius  how far they reach, at the beginning of the help: "With --radius"
+/// Adds --local.
+/// @param radius  start of the help text, how far the graph reaches: "Up to --radius"
 void add_local(CLI::App& app, InputOptions& o, const std::string& radius);
-/// --repair, --weld, --drop-degenerate, --drop-duplicates, --orient
+/// Adds --repair, --weld, --drop-degenerate, --drop-duplicates, --orient.
 void add_repair_options(CLI::App& app, InputOptions& o);
-/// --no-flips, --non-manifold, --discretization, and those of repairs
+/// Adds --no-flips, --non-manifold, --discretization, and the options of repairs.
 void add_mesh_options(CLI::App& app, InputOptions& o);
 
-/// --method; options of heat are refused with another one.
-/// @param methods  that the subcommand offers besides heat
-/// @param chosen   whether the method that suits the surface is the default; options of heat choose heat. Else heat is
+/// Adds --method. Options of heat are errors with other methods.
+/// @param methods  methods of the subcommand in addition to heat
+/// @param chosen   the default is the method that suits the surface, and options of heat select heat; otherwise the default is heat
 CLI::Option* add_method(CLI::App& app, SolveOptions& o, std::vector<Method> methods = {Method::polar, Method::exact},
                         bool chosen = false);
 CLI::Option* add_tolerance(CLI::App& app, SolveOptions& o);
 CLI::Option* add_variant(CLI::App& app, SolveOptions& o);
 CLI::Option* add_strategy(CLI::App& app, SolveOptions& o);
 CLI::Option* add_t_coef(CLI::App& app, SolveOptions& o);
-/// For the graph, and for maps on it where there are any.
+/// Adds --threads, for the graph and, unless null, for maps on it.
 CLI::Option* add_threads(CLI::App& app, InputOptions& graph, SolveOptions* maps = nullptr);
-/// --variant, --backend, --t-coef, --threads, those of clouds and those of meshes.
+/// Adds --variant, --backend, --t-coef, --threads, the options of clouds and those of meshes.
 void add_graph_options(CLI::App& app, InputOptions& input, SolveOptions& solve);
 
-/// --output, --no-overwrite
+/// Adds --output and --no-overwrite.
 CLI::Option* add_output(CLI::App& app, OutputOptions& o);
-/// The same for what `io::write` writes, with --format.
+/// Adds --output, --no-overwrite and --format for tables (`io::write`).
 CLI::Option* add_table_output(CLI::App& app, OutputOptions& o);
 CLI::Option* add_json(CLI::App& app, OutputOptions& o);
 CLI::Option* add_view(CLI::App& app, OutputOptions& o);
-/// --verbose, --quiet
+/// Adds --verbose and --quiet.
 void add_verbosity(CLI::App& app, Verbosity& verbosity, const std::string& group = "Options");
-/// --json, --view with what goes with a map's picture, --verbose, --quiet
+/// Adds --json, --view, the options of pictures of a map, --verbose and --quiet.
 void add_map_results(CLI::App& app, OutputOptions& o);
 
 }  // namespace ahm::app

@@ -1,5 +1,5 @@
 /// \file
-/// The command line as data: groups of options, of which each subcommand composes what it offers.
+/// The options of the command line as data, in groups from which the subcommands compose their own.
 #pragma once
 
 #include <cstdint>
@@ -15,68 +15,68 @@
 
 namespace ahm::app {
 
-/// What is read, and how it becomes a surface.
+/// The input, and how a surface is built from it.
 struct InputOptions {
   std::string path;              ///< "-": standard input
-  std::string format;            ///< extension; empty: as the path says
+  std::string format;            ///< extension; empty: that of the path
   std::string backend = "auto";  ///< or the name of one of `backends()`
   unsigned threads = 0;          ///< 0: one per core
 
   // Point clouds
   std::optional<double> voxel;
-  std::vector<SourceSpec> named;  ///< points that the command names: --voxel keeps their rows
+  std::vector<SourceSpec> named;  ///< points in the command line: --voxel keeps their rows
   bool outliers = false;
   bool drop_nan = false;
-  bool around_source = false;   ///< build the graph only around the source,
-  std::optional<double> local;  ///< as a map of this radius needs it
+  bool around_source = false;   ///< build the graph only around the source
+  std::optional<double> local;  ///< radius of the map, with `around_source`
   std::optional<Index> k;
   std::string knn = "nanoflann";  ///< nanoflann, flann, pcl
   std::string normals = "auto";   ///< auto, oriented, unoriented, estimate
-  std::optional<double> smooth;   ///< radius, 0: off; none: where there is noise
+  std::optional<double> smooth;   ///< radius; 0: off; none: only where the cloud is noisy
 
   // Meshes
   bool flips = true;                    ///< intrinsic Delaunay triangulation
   std::string non_manifold = "error";   ///< error, split
-  std::string discretization = "auto";  ///< of polygons: auto, polygons, refined
+  std::string discretization = "auto";  ///< of polygon meshes: auto, polygons, refined
   RepairOptions repair;
-  std::vector<std::uint8_t> turned;  ///< with --local: as of `trimesh::MeshOptions`
+  std::vector<std::uint8_t> turned;  ///< with --local: `trimesh::MeshOptions::turned`
 };
 
-/// How maps are computed.
+/// Options of the computation of maps.
 struct SolveOptions : HeatOptions {
-  std::optional<Method> method = Method::heat;  ///< none: the one that suits the surface
+  std::optional<Method> method = Method::heat;  ///< none: the method that suits the surface
   std::optional<double> radius;
-  double tolerance = 0;  ///< of exact maps
+  double tolerance = 0;  ///< tolerance of exact maps
 };
 
-/// Where the u axis points.
+/// The direction of the u axis.
 struct UAxis {
-  bool curvature = false;  ///< where the surface bends most, or
-  Vec3 direction{};        ///< a vector of space
+  bool curvature = false;  ///< the direction in which the surface bends most; false: `direction`
+  Vec3 direction{};        ///< a vector in space
 };
 
-/// Where a map starts.
+/// The source of a map.
 struct SourceOptions {
   SourceSpec spec;
   std::optional<UAxis> u_axis;
 };
 
-/// What is told on standard error and, in words, on standard output.
+/// The amount of text on standard error and standard output.
 enum class Verbosity { quiet, normal, verbose };
 
-/// What is told, and where. Empty: not at all.
+/// The outputs of a command. Empty names: no such output.
 struct OutputOptions {
   std::string output;       ///< a file, or `standard_output`
-  std::string format;       ///< extension; empty: as the name says
+  std::string format;       ///< extension; empty: that of the name
   std::string json;         ///< "-": standard output
-  bool json_lines = false;  ///< one line per summary, for several
+  bool json_lines = false;  ///< write each JSON summary on one line
   std::string view;
   PictureChoice picture;
-  bool keep_existing = false;  ///< refuse to replace files
+  bool keep_existing = false;  ///< do not replace files
   Verbosity verbosity = Verbosity::normal;
 };
 
-/// The name that "-" stands for where something is written.
+/// The file name that "-" means for outputs.
 inline constexpr const char* standard_output = "/dev/stdout";
 
 }  // namespace ahm::app

@@ -76,7 +76,7 @@ Vec3 parse_triple(std::string_view text) {
 
 Vec3 parse_direction(std::string_view text) {
   const Vec3 v = parse_triple(text);
-  if (v == Vec3{0, 0, 0}) refuse(text, "a direction: it is zero");
+  if (v == Vec3{0, 0, 0}) refuse(text, "a direction, because it is zero");
   return v;
 }
 
@@ -86,16 +86,16 @@ SourceFace parse_face(std::string_view text) {
   const std::string_view rest = text.substr(5);
   const std::size_t colon = rest.find(':');
   if (colon == std::string_view::npos)
-    throw std::invalid_argument(fmt::format("'{}' lacks barycentric coordinates: write face:F:b0,b1,b2", text));
+    throw std::invalid_argument(fmt::format("'{}' has no barycentric coordinates; write face:F:b0,b1,b2", text));
   SourceFace result{static_cast<Index>(parse_integer(rest.substr(0, colon), 0)), parse_numbers(rest.substr(colon + 1))};
   const auto& weights = result.weights;
   const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
   if (weights.size() < 3)
-    throw std::invalid_argument(
-        fmt::format("'{}' has {} barycentric coordinates; write one per corner of the face", text, weights.size()));
-  if (*std::min_element(weights.begin(), weights.end()) < 0 || std::abs(sum - 1) > 1e-6)
     throw std::invalid_argument(fmt::format(
-        "'{}' has barycentric coordinates that are negative or do not add up to 1 (they add up to {})", text, sum));
+        "'{}': expected one barycentric coordinate per corner of the face, found {}", text, weights.size()));
+  if (*std::min_element(weights.begin(), weights.end()) < 0 || std::abs(sum - 1) > 1e-6)
+    throw std::invalid_argument(
+        fmt::format("'{}': barycentric coordinates must be >= 0 and have the sum 1; their sum is {}", text, sum));
   return result;
 }
 
@@ -108,7 +108,7 @@ SourceSpec parse_source(std::string_view text) {
     return SourceVertex{static_cast<Index>(parse_integer(text, 0))};
   } catch (const std::invalid_argument&) {
     throw std::invalid_argument(
-        fmt::format("'{}' is no source: write a 0-based vertex index, x,y,z or face:F:b0,b1,b2", text));
+        fmt::format("'{}' is not a source; write a vertex index (from 0), x,y,z or face:F:b0,b1,b2", text));
   }
 }
 
@@ -136,13 +136,13 @@ std::vector<std::string> words_of(const std::string& text) {
   return words;
 }
 
-/// Holds letters as no number does.
+/// Whether a text contains letters that numbers do not have.
 bool looks_like_a_name(const std::string& text) {
   return !text.starts_with("face:") &&
          std::ranges::any_of(text, [](unsigned char c) { return std::isalpha(c) != 0 && c != 'e' && c != 'E'; });
 }
 
-/// Hands every entry to `parse`: words of the text, or lines of the file it names.
+/// Calls `parse` for every entry: the words of the text, or the lines of the file with this name.
 void for_each_entry(const std::string& text, const std::function<void(const std::string&)>& parse) {
   std::error_code ignored;
   if (std::filesystem::is_regular_file(text, ignored)) return for_each_line(text, text, "entries", parse);
@@ -173,13 +173,13 @@ const std::vector<std::string>& lists_read() { return lists(); }
 void require_file(const std::string& path, const std::string& what) {
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored))
-    throw std::invalid_argument(fmt::format("there is no file '{}'; write the name of one with {}", path, what));
+    throw std::invalid_argument(fmt::format("there is no file '{}'; write the name of a file with {}", path, what));
 }
 
 void for_each_line(const std::string& path, const std::string& name, const std::string& what,
                    const std::function<void(const std::string&)>& parse) {
   std::ifstream file(path);
-  if (!file) throw IoError(name + ": cannot be read");
+  if (!file) throw IoError(name + ": the file cannot be read");
   lists().push_back(path);
   std::size_t number = 0, entries = 0;
   for (std::string line; std::getline(file, line);) {
@@ -193,7 +193,7 @@ void for_each_line(const std::string& path, const std::string& name, const std::
     }
     ++entries;
   }
-  if (entries == 0) throw InvalidArgument(name + ": holds no " + what);
+  if (entries == 0) throw InvalidArgument(name + ": the file contains no " + what);
 }
 
 std::vector<SourceSpec> parse_sources(const std::string& text) {
@@ -223,7 +223,7 @@ Vec3 position_in(const io::Geometry& input, const SourceSpec& spec, const std::s
   const auto within = [&](Index index, std::size_t count, const char* what) {
     if (static_cast<std::size_t>(index) < count) return static_cast<std::size_t>(index);
     throw InvalidArgument(
-        fmt::format("{} {}: the input has {} {}, numbered from 0", option, to_string(spec), count, what));
+        fmt::format("{} {}: out of range; the input has {} {}, counted from 0", option, to_string(spec), count, what));
   };
   if (const auto* position = std::get_if<SourcePosition>(&spec)) return position->position;
   if (const auto* vertex = std::get_if<SourceVertex>(&spec)) {
@@ -231,14 +231,14 @@ Vec3 position_in(const io::Geometry& input, const SourceSpec& spec, const std::s
         input.points[within(vertex->index, input.points.size(), input.face_count() > 0 ? "vertices" : "points")];
     for (double x : point)
       if (!std::isfinite(x))
-        throw InvalidArgument(fmt::format("{} {}: this point has a coordinate that is {}", option, vertex->index, x));
+        throw InvalidArgument(fmt::format("{} {}: a coordinate of this point is {}", option, vertex->index, x));
     return point;
   }
   const auto& [face, weights] = std::get<SourceFace>(spec);
   const auto corners = input.face(within(face, input.face_count(), "faces"));
   if (weights.size() != corners.size())
-    throw InvalidArgument(fmt::format("{} {}: this face has {} corners, give as many coordinates", option,
-                                      to_string(spec), corners.size()));
+    throw InvalidArgument(fmt::format("{} {}: this face has {} corners and requires as many barycentric coordinates",
+                                      option, to_string(spec), corners.size()));
   Vec3 result{};
   for (std::size_t c = 0; c < corners.size(); ++c)
     for (std::size_t a = 0; a < 3; ++a) result[a] += weights[c] * input.points[corners[c]][a];

@@ -14,13 +14,13 @@
 namespace ahm::app {
 
 std::int64_t peak_rss_bytes() {
-  // What getrusage tells begins with the peak of the program that started this one.
+  // Not from getrusage: its value includes the peak of the program that started this one.
   std::ifstream status("/proc/self/status");
   for (std::string word; status >> word;)
     if (std::int64_t kibibytes = 0; word == "VmHWM:" && status >> kibibytes) return kibibytes * 1024;
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
-  return static_cast<std::int64_t>(usage.ru_maxrss) * 1024;  // Linux counts in kibibytes
+  return static_cast<std::int64_t>(usage.ru_maxrss) * 1024;  // in kibibytes on Linux
 }
 
 double processor_seconds() {
@@ -46,7 +46,7 @@ nlohmann::ordered_json versions() {
   result["blas_optimized"] = algebra.blas_optimized;
   result["eigen"] = fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION);
 #ifdef AHM_WITH_PCL
-  result["pcl"] = AHM_PCL_VERSION;  // which is loaded only where it is needed
+  result["pcl"] = AHM_PCL_VERSION;  // compiled in; the library is loaded when needed
 #endif
   result["cli11"] = CLI11_VERSION;
   result["fmt"] = fmt::format("{}.{}.{}", FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100);

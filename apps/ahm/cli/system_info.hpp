@@ -1,5 +1,5 @@
 /// \file
-/// What the process runs on, for reports.
+/// Memory, processor time and library versions of the process, for reports.
 #pragma once
 
 #include <cstdint>
@@ -8,19 +8,19 @@
 
 namespace ahm::app {
 
-/// Largest resident memory of the process so far.
+/// Peak resident memory of the process so far, bytes.
 std::int64_t peak_rss_bytes();
 
-/// Processor time of the process so far, all threads.
+/// Processor time of the process so far, over all threads, seconds.
 double processor_seconds();
 
-/// "1.23 GB", "45 MB", "6 kB": powers of 1000.
+/// A number of bytes as text, in powers of 1000: "1.23 GB", "45 MB", "6 kB".
 std::string bytes_as_text(std::int64_t bytes);
 
-/// Versions of ahm and the libraries it stands on, and the BLAS in use.
+/// Versions of ahm, of the libraries it uses, and the BLAS in use.
 nlohmann::ordered_json versions();
 
-/// The same for people, one line each: what `ahm --version` prints.
+/// The output of `ahm --version`: one version per line.
 std::string versions_as_text();
 
 }  // namespace ahm::app

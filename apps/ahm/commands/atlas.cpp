@@ -22,16 +22,14 @@ namespace ahm::app {
 namespace {
 
 constexpr const char* atlas_footer =
-    "SOURCES is a list between blanks, or a file with one entry per line, of vertices of INPUT (123, counted from 0) "
-    "or\n"
-    "positions (1.5,0,-2: the nearest vertex). The region nearest to each becomes one chart, flattened by its own "
-    "map.\n"
+    "SOURCES is a list separated by blanks, or a file with one entry per line. An entry is a vertex of INPUT\n"
+    "(123, counted from 0) or a position (1.5,0,-2: the nearest vertex). The region nearest to each source becomes\n"
+    "one chart, flattened by a map of its own.\n"
     "\n"
-    "OUTPUT  .obj (with .mtl and _atlas.png beside it) or .glb; polygons of .obj stay whole, clouds become triangles\n"
+    "OUTPUT  .obj (also writes .mtl and _atlas.png) or .glb. An .obj keeps polygons whole; clouds are triangulated.\n"
     "\n"
-    "Distortion D = max(1/sigma1, sigma2) of every triangle: 1 where it keeps its shape and size. Flipped triangles "
-    "lie\n"
-    "where a chart closes around a handle or a limb; more charts, or --max-distortion, open it.\n"
+    "Distortion D = max(1/sigma1, sigma2) of a triangle is 1 where the map keeps its shape and size. Triangles are\n"
+    "flipped where a chart closes around a handle or a limb. More charts, or --max-distortion, avoid this.\n"
     "\n"
     "Examples:\n"
     "  ahm atlas bunny.ply --charts 30 -o bunny.glb --view bunny.png\n"
@@ -58,7 +56,7 @@ std::vector<Vertex> choose_sources(const AtlasCommandOptions& options, const Inp
   return vertices_at(input, options.sources, "--sources");
 }
 
-/// Everything that is reported.
+/// The atlas and the figures of its report.
 struct Made {
   Atlas atlas;
   AtlasDistortion distortion;
@@ -88,27 +86,27 @@ void comment(const AtlasCommandOptions& options, const Made& made, const Tangent
   if (made.uncharted > 0) {
     const Index components = connected_components(graph).count;
     journal.add_warning(
-        fmt::format("{} of {} faces have no chart and are gray{}", made.uncharted, made.faces,
+        fmt::format("faces without a chart, drawn in gray: {} of {}{}", made.uncharted, made.faces,
                     components > static_cast<Index>(made.atlas.sources.size())
-                        ? fmt::format(": the surface has {} components, give at least one source to each", components)
-                        : ": no map reaches them"));
+                        ? fmt::format("; the surface has {} components, place a source in each", components)
+                        : "; no map reaches them"));
   }
   const auto bad = std::count_if(made.distortion.charts.begin(), made.distortion.charts.end(),
                                  [](const DistortionSummary& chart) { return chart.flipped_area > 0.01; });
   if (bad > 0)
     journal.add_warning(fmt::format(
-        "{} of {} charts have more than 1 % of their area flipped: they close around a handle or a limb; {}", bad,
+        "charts with more than 1 % of their area flipped: {} of {}; they close around a handle or a limb; {}", bad,
         made.atlas.charts.size(),
         options.max_distortion ? "raise --charts or lower --max-distortion"
-                               : "raise --charts, or let --max-distortion 2 add sources"));
+                               : "raise --charts, or add sources with --max-distortion 2"));
   const auto distorted = std::ranges::count_if(made.distortion.charts, [&](const DistortionSummary& chart) {
     return options.max_distortion && chart.percentile_95 > *options.max_distortion;
   });
   if (distorted > 0)
-    journal.add_warning(
-        fmt::format("{} of {} charts are distorted by more than {:.4g} at over 5 % of their area: more sources did not "
-                    "help, or there are as many as there may be; the surface is too coarse for its bends there",
-                    distorted, made.atlas.charts.size(), *options.max_distortion));
+    journal.add_warning(fmt::format(
+        "charts with a distortion above {2:.4g} on more than 5 % of their area: {0} of {1}; more sources did "
+        "not help, or their number is at its limit; the mesh is too coarse for the bends there",
+        distorted, made.atlas.charts.size(), *options.max_distortion));
 }
 
 void write_files(const AtlasCommandOptions& options, const SurfaceFaces& faces, const Made& made) {
@@ -168,12 +166,13 @@ void report(const AtlasCommandOptions& options, const Input& input, const Made& 
 
 void run(const AtlasCommandOptions& options) {
   check_texture_output(options.input.path, options.output, {".obj", ".glb"}, {"atlas"}, options.texture);
-  if (!options.texture.empty()) io::read_image(options.texture);  // better refused now than after the work
+  if (!options.texture.empty()) io::read_image(options.texture);  // reports a bad file before the work
   Journal journal(options.output.verbosity);
   const Input input = open_input(naming(options.input, options.sources), journal);
   const TangentGraph& graph = input.graph();
   SolveOptions solve = options.solve;
-  if (input.surface().faces().size() > 0) solve.strategy = Strategy::march;  // charts need no factors of the whole
+  if (input.surface().faces().size() > 0)
+    solve.strategy = Strategy::march;  // charts do not need factors of the whole surface
   const Maps maps(solve, input, journal, 0);
 
   journal.start("sources");
@@ -199,8 +198,9 @@ void run(const AtlasCommandOptions& options) {
 void offer(CLI::App& app, AtlasCommandOptions& o) {
   add_input(app, o.input);
   auto* charts = add_parsed(app, "--charts", o.charts, integer_parser(1), "K",
-                            "Spread K sources, each the farthest from those before (default 20)");
-  add_parsed(app, "--sources", o.sources, parse_sources, "SOURCES", "List or file instead, see below")
+                            "Number of spread sources, each the farthest from those before it (default 20)");
+  add_parsed(app, "--sources", o.sources, parse_sources, "SOURCES",
+             "Sources instead of --charts: list or file, see below")
       ->excludes(charts);
   add_parsed(
       app, "--max-distortion", o.max_distortion,
@@ -209,16 +209,18 @@ void offer(CLI::App& app, AtlasCommandOptions& o) {
         if (!(value > 1)) throw std::invalid_argument(fmt::format("'{}' is not greater than 1", text));
         return value;
       },
-      "D", "Add sources until 99 % of every chart have no more, unflipped");
-  add_parsed(app, "--size", o.pack.size, integer_parser(16, 32768), "N", "Side of the texture (default 2048)");
-  add_parsed(app, "--margin", o.pack.margin, integer_parser(0, 1024), "N", "Texels free around charts (default 4)");
-  add_parsed(app, "--texture", o.texture, non_empty, "FILE", "PNG or JPEG instead of a checkerboard");
+      "D", "Add sources until 99 % of each chart is below distortion D and not flipped");
+  add_parsed(app, "--size", o.pack.size, integer_parser(16, 32768), "N",
+             "Side of the texture in pixels (default 2048)");
+  add_parsed(app, "--margin", o.pack.margin, integer_parser(0, 1024), "N",
+             "Empty pixels around each chart (default 4)");
+  add_parsed(app, "--texture", o.texture, non_empty, "FILE", "Texture image, PNG or JPEG (default: a checkerboard)");
   add_output(app, o.output)->required();
   add_method(app, o.solve);
   add_tolerance(app, o.solve);
   add_graph_options(app, o.input, o.solve);
   add_json(app, o.output);
-  add_view(app, o.output)->description("Draw the result: .png");
+  add_view(app, o.output)->description("Write a picture of the result: .png");
   add_texture_picture(app, o.output.picture);
   add_verbosity(app, o.output.verbosity);
 }
@@ -227,7 +229,7 @@ void offer(CLI::App& app, AtlasCommandOptions& o) {
 
 Subcommand add_atlas(CLI::App& program) {
   return subcommand<AtlasCommandOptions>(
-      program, "atlas", "Texture atlas: charts of low distortion, packed in a square", atlas_footer, offer, run);
+      program, "atlas", "Texture atlas: charts of low distortion, packed into a square", atlas_footer, offer, run);
 }
 
 }  // namespace ahm::app

@@ -21,14 +21,13 @@ namespace ahm::app {
 namespace {
 
 constexpr const char* cells_footer =
-    "SOURCES is a list between blanks, or a file with one entry per line, of vertices of INPUT (123, counted from 0) "
-    "or\n"
-    "positions (1.5,0,-2: the nearest vertex; in files also 1.5 0 -2).\n"
+    "SOURCES is a list separated by blanks, or a file with one entry per line. An entry is a vertex of INPUT\n"
+    "(123, counted from 0) or a position (1.5,0,-2: the nearest vertex; in files also 1.5 0 -2).\n"
     "\n"
-    "OUTPUT  .csv, .jsonl, .ply, .pcd or .vtp; one row per vertex of INPUT, in its order: "
-    "index,x,y,z,distance,status,label\n"
-    "          label     place of the nearest source in the list, from 0\n"
-    "          distance  from it\n"
+    "OUTPUT  .csv, .jsonl, .ply, .pcd or .vtp; one row per vertex of INPUT, in the same order:\n"
+    "        index,x,y,z,distance,status,label\n"
+    "          label     number of the nearest source, counted from 0\n"
+    "          distance  distance from that source along the surface\n"
     "\n"
     "Examples:\n"
     "  ahm cells scan.ply --count 40 -o cells.csv --view cells.png\n"
@@ -39,33 +38,36 @@ struct CellsOptions {
   SolveOptions solve;
   OutputOptions output;
   std::vector<SourceSpec> sources;
-  Index count = 0;  ///< of spread sources; 0: `sources`
+  Index count = 0;  ///< number of spread sources; 0: use `sources`
   std::optional<SourceSpec> start;
 };
 
-/// Sources as vertices of the graph.
+/// The vertices of the graph at the sources.
+/// @throws InvalidArgument (two sources at one vertex)
 std::vector<Vertex> vertices_of(const Input& input, const std::vector<SourceSpec>& specs) {
   std::vector<Vertex> result;
   std::vector<bool> taken(static_cast<std::size_t>(input.graph().size()), false);
   for (const SourceSpec& spec : specs) {
     const Vertex vertex = vertex_at(input, spec, "--sources");
     if (taken[vertex.index])
-      throw InvalidArgument(
-          fmt::format("--sources {}: this is the vertex of an entry before; give every source once", to_string(spec)));
+      throw InvalidArgument(fmt::format("--sources {}: an earlier source is at the same vertex; list every vertex once",
+                                        to_string(spec)));
     taken[vertex.index] = true;
     result.push_back(vertex);
   }
   return result;
 }
 
-/// @param geodesics  none: by the front
+/// Vertices that are spread over the surface, each the farthest from those before it.
+/// @param geodesics  for exact distances; none: distances by the front
 std::vector<Vertex> spread(const CellsOptions& options, const Input& input,
                            const std::optional<ExactGeodesics>& geodesics, std::optional<Wavefront>& front,
                            Journal& journal) {
   journal.start("spread");
   const std::vector<Vertex> among = vertices_with_rows(input.surface().rows());
   if (options.count > std::ssize(among))
-    throw InvalidArgument(fmt::format("--count {}: the graph has {} vertices only", options.count, among.size()));
+    throw InvalidArgument(
+        fmt::format("--count {}: larger than the number of vertices, {}", options.count, among.size()));
   if (options.start) comment_on_positions(input, std::span(&*options.start, 1), "--start", journal);
   const Vertex first =
       options.start ? vertex_at(input, *options.start, "--start") : first_vertex(input.surface().rows());
@@ -73,14 +75,14 @@ std::vector<Vertex> spread(const CellsOptions& options, const Input& input,
                    : farthest_points(*front, first, options.count, journal.progress(), among);
 }
 
-/// What is known of every row of the input.
+/// Distance, cell and status of every row of the input.
 struct CellRows {
   std::vector<double> distance, label;
-  std::vector<Index> labels;  ///< -1: none
+  std::vector<Index> labels;  ///< -1: in no cell
   std::vector<Status> status;
 };
 
-/// Of several vertices of a row, the one nearest to its source counts.
+/// Cells by row. A row with several vertices takes the vertex that is nearest to its source.
 CellRows rows_of(const Input& input, const VoronoiCells& of_vertices) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   const auto away = [&](Vertex v) { return of_vertices.distances[v.index]; };
@@ -100,7 +102,7 @@ CellRows rows_of(const Input& input, const VoronoiCells& of_vertices) {
 
 struct Cell {
   Index vertices = 0;
-  double area = 0;  ///< world units; NaN where no double holds it
+  double area = 0;  ///< world units squared; NaN where it overflows
 };
 
 std::vector<Cell> sizes(const TangentGraph& graph, const std::vector<Index>& labels, std::size_t count) {
@@ -136,11 +138,11 @@ void report(const CellsOptions& options, const Input& input, const std::vector<I
   const auto [smallest, largest] =
       std::minmax_element(cells.begin(), cells.end(), [](const Cell& a, const Cell& b) { return a.area < b.area; });
   if (std::any_of(cells.begin(), cells.end(), [](const Cell& cell) { return std::isnan(cell.area); }))
-    journal.add_warning("areas: no double holds squares of such lengths; they are given as nan");
+    journal.add_warning("areas: the squares of the lengths overflow; they are written as nan");
   j["largest_distance"] = farthest;
   j["smallest_area"] = smallest->area;
   j["largest_area"] = largest->area;
-  for (std::size_t k = 0; k < rows.size() && !options.output.json.empty(); ++k)  // 2 kB each
+  for (std::size_t k = 0; k < rows.size() && !options.output.json.empty(); ++k)  // 2 kB per source
     j["sources"].push_back({{"label", k},
                             {"row", rows[k]},
                             {"position", positions[k]},
@@ -193,18 +195,19 @@ void run(const CellsOptions& options) {
 
 void offer(CLI::App& app, CellsOptions& o) {
   add_input(app, o.input);
-  auto* sources = add_parsed(app, "--sources", o.sources, parse_sources, "SOURCES", "List or file, see below");
+  auto* sources = add_parsed(app, "--sources", o.sources, parse_sources, "SOURCES", "Sources: list or file, see below");
   auto* count = add_parsed(app, "--count", o.count, integer_parser(1), "K",
-                           "Spread K sources instead, each the farthest from those before");
-  add_parsed(app, "--start", o.start, parse_source, "SPEC", "With --count: the first one (default: the first row)")
+                           "Number of spread sources, each the farthest from those before it");
+  add_parsed(app, "--start", o.start, parse_source, "SPEC", "First of the --count sources (default: the first row)")
       ->needs(count);
   app.callback([=] {
     if ((sources->count() > 0) == (count->count() > 0))
-      throw CLI::ValidationError("--sources", "give either --sources or --count");
+      throw CLI::ValidationError("--sources", "use either --sources or --count");
   });
   add_table_output(app, o.output)->required();
   add_method(app, o.solve, {Method::exact})
-      ->description("heat (default): by unfolding the graph, or exact: by straight lines over the faces of a mesh");
+      ->description(
+          "heat (default): distances by a wavefront on the graph; exact: by straight lines over the faces of a mesh");
   add_tolerance(app, o.solve);
   add_backend(app, o.input);
   add_threads(app, o.input);
@@ -216,8 +219,8 @@ void offer(CLI::App& app, CellsOptions& o) {
 }  // namespace
 
 Subcommand add_cells(CLI::App& program) {
-  return subcommand<CellsOptions>(program, "cells", "Regions nearest to given or evenly spread points", cells_footer,
-                                  offer, run);
+  return subcommand<CellsOptions>(program, "cells", "Geodesic Voronoi cells of listed or evenly spread points",
+                                  cells_footer, offer, run);
 }
 
 }  // namespace ahm::app

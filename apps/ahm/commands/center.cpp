@@ -18,14 +18,12 @@ namespace ahm::app {
 namespace {
 
 constexpr const char* center_footer =
-    "POINTS is a list between blanks, or a file with one entry per line, of vertices of INPUT (123, counted from 0) "
-    "or\n"
-    "positions (1.5,0,-2: the nearest vertex; in files also 1.5 0 -2). WEIGHTS likewise, one number per point.\n"
+    "POINTS is a list separated by blanks, or a file with one entry per line. An entry is a vertex of INPUT\n"
+    "(123, counted from 0) or a position (1.5,0,-2: the nearest vertex; in files also 1.5 0 -2).\n"
+    "WEIGHTS is a list or a file of the same form, with one number per point.\n"
     "\n"
-    "The center lies between vertices: it is printed as a position on the surface, straight on from the vertex nearest "
-    "to "
-    "it.\n"
-    "Points over more than half of a closed surface may have several centers; --start chooses among them.\n"
+    "The center usually lies between vertices. The program prints its position on the surface and the nearest vertex.\n"
+    "Points that cover more than half of a closed surface may have several centers; --start chooses among them.\n"
     "\n"
     "Examples:\n"
     "  ahm center scan.ply --points '12 480 901'\n"
@@ -44,7 +42,8 @@ struct CenterCommandOptions {
 Center find_center(const CenterCommandOptions& options, const Input& input, const Maps& maps, Journal& journal) {
   const std::vector<Vertex> vertices = vertices_at(input, options.points, "--points");
   if (!options.weights.empty() && options.weights.size() != vertices.size())
-    throw InvalidArgument(fmt::format("--weights: {} numbers for {} points", options.weights.size(), vertices.size()));
+    throw InvalidArgument(fmt::format("--weights: expected one weight per point, found {} for {}",
+                                      options.weights.size(), vertices.size()));
   CenterOptions center;
   comment_on_positions(input, options.points, "--points", journal);
   if (options.start) {
@@ -81,18 +80,18 @@ void report(const CenterCommandOptions& options, const Input& input, const Cente
       center.converged ? "converged" : "not converged");
   deliver(std::move(j), text, options.output, journal);
   if (options.output.verbosity == Verbosity::quiet && options.output.json != "-")
-    print(text);  // the result, no comment
+    print(text);  // this is the result, not a comment on it
 }
 
 void comment_on(const Center& center, const TangentGraph& graph, Journal& journal) {
   if (!center.converged)
-    journal.add_warning(fmt::format("the center is still moving after {} maps; give another --start", center.maps));
+    journal.add_warning(fmt::format("the center is still moving, maps used: {}; choose another --start", center.maps));
   const double away = std::hypot(center.offset[0], center.offset[1]);
   const double edge = graph.mean_edge_length() * graph.length_unit();
   if (away > 3 * edge)
     journal.add_warning(fmt::format(
-        "the center lies {:.4g}, {:.0f} mean edge lengths, from the vertex nearest to it: in a hole, or the "
-        "points are too far apart on this surface for one center; try another --start",
+        "the center is {:.4g} ({:.0f} mean edge lengths) from the nearest vertex: it lies in a hole, or the points are "
+        "too far apart on this surface to have one center; try another --start",
         away, away / edge));
 }
 
@@ -110,10 +109,12 @@ void run(const CenterCommandOptions& options) {
 
 void offer(CLI::App& app, CenterCommandOptions& o) {
   add_input(app, o.input);
-  add_parsed(app, "--points", o.points, parse_sources, "POINTS", "List or file, see below")->required();
-  add_parsed(app, "--weights", o.weights, parse_weights, "WEIGHTS", "List or file (default: all equal)");
-  app.add_flag("--median", o.median, "Least sum of distances instead of squared distances");
-  add_parsed(app, "--start", o.start, parse_source, "SPEC", "Where to begin (default: the heaviest point)");
+  add_parsed(app, "--points", o.points, parse_sources, "POINTS", "Points: list or file, see below")->required();
+  add_parsed(app, "--weights", o.weights, parse_weights, "WEIGHTS",
+             "Weights of the points: list or file (default: all equal)");
+  app.add_flag("--median", o.median, "Minimize the sum of distances instead of squared distances");
+  add_parsed(app, "--start", o.start, parse_source, "SPEC",
+             "Where the search starts (default: the point of largest weight)");
   add_method(app, o.solve, {Method::polar, Method::exact}, true);
   add_tolerance(app, o.solve);
   add_graph_options(app, o.input, o.solve);
@@ -124,7 +125,7 @@ void offer(CLI::App& app, CenterCommandOptions& o) {
 }  // namespace
 
 Subcommand add_center(CLI::App& program) {
-  return subcommand<CenterCommandOptions>(program, "center", "Mean or median of points of a surface", center_footer,
+  return subcommand<CenterCommandOptions>(program, "center", "Mean or median of points on a surface", center_footer,
                                           offer, run);
 }
 

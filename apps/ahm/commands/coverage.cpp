@@ -47,14 +47,18 @@ namespace {
 
 constexpr const char* coverage_footer =
     "SPEC is 123, x,y,z or face:7:.2,.3,.5 as in 'ahm logmap'.\n"
-    "OUTPUT is .csv, .jsonl, or .ply and .vtp with edges between consecutive points; one row per point, in order of "
-    "travel:\n"
-    "  index         of the point, from 0 (.csv, .jsonl)\n"
-    "  piece         a tool lifts between pieces     line          of the raster\n"
-    "  x,y,z         on the surface                  nx,ny,nz      its normal\n"
-    "  hx,hy,hz      heading, unit, in the surface   u,v           coordinates\n"
-    "  arclength     from the start of the piece     spacing       to the next line, in space\n"
-    "  between       1: not of the pattern, but where the way over the faces bends\n"
+    "OUTPUT is .csv, .jsonl, or .ply and .vtp with edges between consecutive points; one row per point, in order\n"
+    "along the path:\n"
+    "  index      number of the point, from 0 (.csv, .jsonl)\n"
+    "  piece      number of the connected piece, from 0; the tool lifts between pieces\n"
+    "  line       number of the raster line, from 0\n"
+    "  x,y,z      position on the surface\n"
+    "  nx,ny,nz   unit normal of the surface\n"
+    "  hx,hy,hz   unit direction of travel, tangential to the surface\n"
+    "  u,v        coordinates in the map\n"
+    "  arclength  length of the path from the start of the piece\n"
+    "  spacing    distance in space to the next line\n"
+    "  between    1: added where the path bends between faces; not a point of the pattern\n"
     "\n"
     "Examples:\n"
     "  ahm coverage scan.ply --source 0.1,0.2,1.4 --radius 0.2 --spacing 0.01 -o path.csv\n"
@@ -69,7 +73,7 @@ struct CoverageCommandOptions {
   double min_quality = trusted_quality;
 };
 
-/// The path on the map, as a picture.
+/// Writes a picture of the path on the map.
 void write_view(render::Scene scene, const CoveragePath& path, Results& results, Journal& journal) {
   std::vector<Vec3> curve;
   std::vector<Index> pieces;
@@ -83,15 +87,15 @@ void write_view(render::Scene scene, const CoveragePath& path, Results& results,
   results.write_view(scene, journal);
 }
 
-/// Of the rows within the radius; NaN elsewhere.
+/// Quality of the rows within the radius; NaN elsewhere.
 std::vector<double> quality_within(double radius, const RowLogMap& rows, std::vector<double> quality) {
   for (std::size_t r = 0; r < quality.size(); ++r)
     if (!(rows.distance[r] <= radius)) quality[r] = NAN;
   return quality;
 }
 
-/// Whether a map spreads a vertex and its neighbours over at least half of their area. Behind a corner that ways bend at exact maps lay
-/// them along a line, which no path around the source covers.
+/// Whether the map of a vertex and its neighbors has at least half of their area. Behind a corner where geodesic paths bend, exact
+/// maps collapse the surface to a line, which the pattern does not cover.
 bool has_area(const TangentGraph& graph, const LogMap& map, Index vertex) {
   struct Moments {
     double xx = 0, xy = 0, yy = 0;
@@ -109,7 +113,7 @@ bool has_area(const TangentGraph& graph, const LogMap& map, Index vertex) {
   return of_map.determinant() >= 0.25 * of_edges.determinant();
 }
 
-/// Of the area within the radius, the share whose vertices are trusted.
+/// Share of the area within the radius whose vertices have at least the smallest allowed quality.
 double trusted_share(const TangentGraph& graph, const LogMap& map, const std::vector<double>& quality,
                      const CoverageCommandOptions& options) {
   double all = 0, trusted = 0;
@@ -122,11 +126,11 @@ double trusted_share(const TangentGraph& graph, const LogMap& map, const std::ve
   return trusted / all;
 }
 
-/// What the path amounts to.
+/// Figures of the report.
 struct Summary {
   double length = 0;
-  double covered = 0;                        ///< share of the pattern's points that lie on the surface
-  double spacing_low = 0, spacing_high = 0;  ///< in space: 5 and 95 of 100 points have less
+  double covered = 0;                        ///< share of the pattern's points that are on the surface
+  double spacing_low = 0, spacing_high = 0;  ///< 5th and 95th percentile of the distance between lines in space
 
   explicit Summary(const CoveragePath& path) {
     std::vector<double> spacings;
@@ -160,7 +164,7 @@ void report(const CoverageCommandOptions& options, const Input& input, const Sur
   j["spacing_in_space"] = {{"percentile_5", amount.spacing_low}, {"percentile_95", amount.spacing_high}};
   deliver(j,
           fmt::format("{}: {} in {}, {:.4g} long, lines {:.4g} to {:.4g} apart in space\n"
-                      "on the surface: {:.1f} % of the pattern; trusted: {:.1f} % of the area within the radius\n",
+                      "on the surface: {:.1f} % of the pattern; reliable: {:.1f} % of the area within the radius\n",
                       pattern, counted(path.points.size(), "point"), counted(path.pieces, "piece"), amount.length,
                       amount.spacing_low, amount.spacing_high, 100 * amount.covered, 100 * trusted),
           options.output, journal);
@@ -181,26 +185,28 @@ void run(const CoverageCommandOptions& options) {
   const CoveragePath path = coverage_path(input.surface(), inverse, options.path);
   if (path.points.empty())
     throw InvalidArgument(fmt::format(
-        "--source {}: no line of the pattern meets a trusted part of the surface within {}; choose another source, or "
-        "lower --spacing or --min-quality",
+        "--source {}: no line of the pattern reaches a reliable part of the map within radius {}; choose another "
+        "source, or lower --spacing or --min-quality",
         to_string(options.source.spec), options.path.radius));
   if (!path.straight_reason.empty())
-    journal.add_warning(fmt::format(
-        "the points of the path are joined by straight lines in space, no shortest paths ({})", path.straight_reason));
+    journal.add_warning(
+        fmt::format("the points of the path are joined by straight lines in space instead of shortest paths: {}",
+                    path.straight_reason));
   const Summary amount(path);
   if (amount.spacing_high > 1.25 * options.path.spacing)
-    journal.add_warning(fmt::format(
-        "lines lie up to {:.4g} apart in space, more than --spacing {}: the surface is saddle-shaped or rough",
-        amount.spacing_high, options.path.spacing));
+    journal.add_warning(
+        fmt::format("neighboring lines are up to {:.4g} apart in space, more than --spacing {}: the surface is "
+                    "saddle-shaped or rough",
+                    amount.spacing_high, options.path.spacing));
 
   if (options.path.radius < input.mean_edge_length())
     journal.add_warning(fmt::format(
-        "--radius {}: is less than an edge ({:.4g} in the mean); the path is laid between the neighbours of the source",
+        "--radius {}: smaller than the mean edge length, {:.4g}; the path lies between the source and its neighbors",
         options.path.radius, input.mean_edge_length()));
 
   const RowLogMap rows = input.surface().to_rows(map);
   const std::vector<double> row_quality = to_rows(rows, quality);
-  comment_on_quality(quality_within(options.path.radius, rows, row_quality), "lower --radius, or start elsewhere",
+  comment_on_quality(quality_within(options.path.radius, rows, row_quality), "lower --radius, or choose another source",
                      journal);
 
   Results results(options.output, input, options.input);
@@ -212,29 +218,33 @@ void run(const CoverageCommandOptions& options) {
 
 void offer(CLI::App& app, CoverageCommandOptions& o) {
   add_input(app, o.input);
-  add_source(app, o.source, "Middle of what is covered")->required();
-  add_parsed(app, "--radius", o.path.radius, parse_positive, "R", "How far to go, along the surface")->required();
-  add_parsed(app, "--spacing", o.path.spacing, parse_positive, "S", "Between lines or turns")->required();
+  add_source(app, o.source, "Center of the covered disc, see below")->required();
+  add_parsed(app, "--radius", o.path.radius, parse_positive, "R", "Radius of the covered disc, along the surface")
+      ->required();
+  add_parsed(app, "--spacing", o.path.spacing, parse_positive, "S", "Distance between neighboring lines or turns")
+      ->required();
   add_table_output(app, o.output)->required();
   add_parsed(app, "--pattern", o.path.pattern,
              choice_of<CoveragePattern>({{"raster", CoveragePattern::raster}, {"spiral", CoveragePattern::spiral}}),
              "NAME", "raster (default) or spiral");
-  add_parsed(app, "--angle", o.path.angle, parse_degrees, "DEG", "Direction of the lines, from the u axis (default 0)");
-  add_parsed(app, "--step", o.path.step, parse_positive, "L", "Between points of the path (default: S / 2)");
+  add_parsed(app, "--angle", o.path.angle, parse_degrees, "DEG",
+             "Angle from the u axis to the lines, in degrees (default 0)");
+  add_parsed(app, "--step", o.path.step, parse_positive, "L", "Distance between points of the path (default: S / 2)");
   add_min_quality(app, o.min_quality);
   add_u_axis(app, o.source);
   add_method(app, o.solve);
   add_tolerance(app, o.solve);
   add_graph_options(app, o.input, o.solve);
-  add_local(app, o.input, "To --radius");
+  add_local(app, o.input, "Up to --radius");
   add_map_results(app, o.output);
 }
 
 }  // namespace
 
 Subcommand add_coverage(CLI::App& program) {
-  return subcommand<CoverageCommandOptions>(
-      program, "coverage", "Path that covers a surface around a point, with normals", coverage_footer, offer, run);
+  return subcommand<CoverageCommandOptions>(program, "coverage",
+                                            "Tool path that covers the surface around a point, with normals",
+                                            coverage_footer, offer, run);
 }
 
 }  // namespace ahm::app

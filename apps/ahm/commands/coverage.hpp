@@ -1,5 +1,5 @@
 /// \file
-/// Coverage paths as files.
+/// Writes coverage paths to files.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace ahm::app {
 
-/// A row per point, with an edge between consecutive points of a piece, as text.
-/// @param format  extension; empty: as the name says. @throws IoError
+/// Writes one row per point, and an edge between consecutive points of a piece. PLY files are text.
+/// @param format  extension; empty: that of the file name. @throws IoError
 void write_coverage(const std::string& file, const std::string& format, const CoveragePath& path);
 
 }  // namespace ahm::app

@@ -25,14 +25,15 @@ namespace ahm::app {
 namespace {
 
 constexpr const char* decal_footer =
-    "SPEC is 123, x,y,z or face:7:.2,.3,.5 as in 'ahm logmap'; the middle of the image lies there. The image's\n"
-    "direction from left to right is the u axis, turned by --angle.\n"
+    "SPEC is 123, x,y,z or face:7:.2,.3,.5 as in 'ahm logmap'. It is the center of the image. The image runs from\n"
+    "left to right along the u axis, turned by --angle.\n"
     "\n"
-    "OUTPUT  .obj or .glb  the surface in gray and, a little above it, the piece under the image, cut at its borders,\n"
-    "                      with its texture (opacity included); of clouds, the piece alone\n"
-    "        .ply          the points of INPUT, colored where the image lies on them; those that --voxel\n"
-    "                      replaced, as the nearest one kept\n"
-    "Where the map is not to be trusted there is no decal, and where it folds it lies on one sheet only.\n"
+    "OUTPUT  .obj or .glb  the surface in gray, and slightly above it the part under the image, cut at the borders of\n"
+    "                      the image, with the image as texture (including opacity); for clouds only that part\n"
+    "        .ply          the points of INPUT, with the colors of the image where it covers them; points that\n"
+    "                      --voxel replaced get the color of the nearest point that remains\n"
+    "Parts of the surface where the quality of the map is below --min-quality stay uncovered. Where the map folds,\n"
+    "the image covers one sheet only.\n"
     "\n"
     "Examples:\n"
     "  ahm decal bowl.ply --image logo.png --source 0,0.2,1.4 --size 0.3 -o bowl.glb --view bowl.png\n"
@@ -51,10 +52,10 @@ struct DecalCommandOptions {
   bool alone = false;
 };
 
-/// What the decal amounts to.
+/// Figures of the report.
 struct Amount {
   DistortionSummary distortion;
-  double covered = 0;  ///< share of the image's area that lies on the surface
+  double covered = 0;  ///< share of the image's area that is on the surface
 
   Amount(const Decal& decal, const DecalOptions& options) {
     std::vector<std::array<Index, 3>> triangles;
@@ -115,21 +116,22 @@ void report(const DecalCommandOptions& options, const Input& input, const Decal&
   j["covered"] = amount.covered;
   j["distortion"] = {{"mean", d.mean}, {"percentile_95", d.percentile_95}, {"largest", d.largest}};
   const std::string text = fmt::format(
-      "image {:.4g} x {:.4g}, {:.1f} % of it on the surface, {} faces\n"
+      "image {:.4g} x {:.4g}, {:.1f} % of it on the surface; faces: {}\n"
       "distortion: mean {:.4g}, 95 % of the area below {:.4g}\n",
       options.decal.width, options.decal.height, 100 * amount.covered, decal.face_begin.size() - 1, d.mean,
       d.percentile_95);
   deliver(std::move(j), text, options.output, journal);
 }
 
-/// Whether the points of the input are written, colored.
+/// Whether the output is the input's points with colors, and not a mesh.
 bool is_points(const OutputOptions& output) { return io::lower_extension(output.output) == ".ply"; }
 
 void run(const DecalCommandOptions& given) {
   DecalCommandOptions options = given;
   check_texture_output(options.input.path, options.output, {".obj", ".glb", ".ply"}, {"decal"}, options.image);
   if (is_points(options.output) && (options.lift || options.alone))
-    throw InvalidArgument("--lift and --alone are for .obj and .glb: a .ply holds the colors of INPUT's points");
+    throw InvalidArgument(
+        "--lift and --alone require .obj or .glb output; a .ply file contains the points of INPUT with colors");
   const Image image = io::read_image(options.image);
   const DecalOptions usual = decal_of(image, options.size);
   options.decal.width = usual.width, options.decal.height = usual.height;
@@ -152,13 +154,13 @@ void run(const DecalCommandOptions& given) {
   const Decal decal = make_decal(inverse, options.decal);
   if (decal.face_begin.size() < 2)
     throw InvalidArgument(fmt::format(
-        "--source {}: no part of the image lies on a trusted part of the surface; choose another source, or raise "
+        "--source {}: the image covers no part of the surface where the map is reliable; choose another source, raise "
         "--size, or lower --min-quality",
         to_string(options.source.spec)));
   const Amount amount(decal, options.decal);
   if (amount.covered < 0.9 && std::isinf(options.decal.radius))
     journal.add_warning(
-        fmt::format("{:.0f} % of the image do not lie on the surface: it ends there, or the map is not to be trusted",
+        fmt::format("{:.0f} % of the image is not on the surface: the surface ends there, or the map is not reliable",
                     100 - 100 * amount.covered));
 
   journal.start("write");
@@ -169,23 +171,29 @@ void run(const DecalCommandOptions& given) {
 
 void offer(CLI::App& app, DecalCommandOptions& o) {
   add_input(app, o.input);
-  add_parsed(app, "--image", o.image, non_empty, "FILE", "PNG or JPEG; its opacity counts")->required();
-  add_source(app, o.source, "Where the middle of the image lies")->required();
-  add_parsed(app, "--size", o.size, parse_positive, "S", "Longer side of the image, along the surface")->required();
+  add_parsed(app, "--image", o.image, non_empty, "FILE",
+             "Image to place on the surface, PNG or JPEG; its opacity is used")
+      ->required();
+  add_source(app, o.source, "Center of the image on the surface, see below")->required();
+  add_parsed(app, "--size", o.size, parse_positive, "S", "Length of the longer side of the image, along the surface")
+      ->required();
   add_output(app, o.output)->required();
-  add_parsed(app, "--angle", o.decal.angle, parse_degrees, "DEG", "Turns the image, from the u axis (default 0)");
-  app.add_flag("--mirror", o.decal.mirrored, "Exchange left and right, for clouds whose normals point inwards");
-  add_parsed(app, "--radius", o.decal.radius, parse_positive, "R", "Cut off what is farther from the source");
-  add_parsed(app, "--lift", o.lift, parse_number, "L", "Above the surface, .obj and .glb (default: S / 500)");
+  add_parsed(app, "--angle", o.decal.angle, parse_degrees, "DEG",
+             "Angle from the u axis to the image's horizontal, in degrees (default 0)");
+  app.add_flag("--mirror", o.decal.mirrored, "Swap left and right, for clouds whose normals point inward");
+  add_parsed(app, "--radius", o.decal.radius, parse_positive, "R",
+             "Cut the image off at this distance from the source");
+  add_parsed(app, "--lift", o.lift, parse_number, "L",
+             "Height of the decal above the surface, for .obj and .glb (default: S / 500)");
   app.add_flag("--alone", o.alone, "Write the decal without the surface (.obj, .glb)");
   add_min_quality(app, o.min_quality);
   add_u_axis(app, o.source);
   add_method(app, o.solve);
   add_tolerance(app, o.solve);
   add_graph_options(app, o.input, o.solve);
-  add_local(app, o.input, "To the corners of the image, or --radius");
+  add_local(app, o.input, "Up to the corners of the image, or to --radius");
   add_json(app, o.output);
-  add_view(app, o.output)->description("Draw the result: .png");
+  add_view(app, o.output)->description("Write a picture of the result: .png");
   add_texture_picture(app, o.output.picture);
   add_verbosity(app, o.output.verbosity);
 }
@@ -193,7 +201,7 @@ void offer(CLI::App& app, DecalCommandOptions& o) {
 }  // namespace
 
 Subcommand add_decal(CLI::App& program) {
-  return subcommand<DecalCommandOptions>(program, "decal", "An image laid on a surface around a point", decal_footer,
+  return subcommand<DecalCommandOptions>(program, "decal", "Image placed on a surface around a point", decal_footer,
                                          offer, run);
 }
 

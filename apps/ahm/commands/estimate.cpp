@@ -23,7 +23,7 @@ struct Estimate {
   double bytes, seconds;
 };
 
-/// Of the program itself.
+/// Memory and time of the program itself, without any input.
 constexpr BuildCost base{.bytes = 17e6, .seconds = 0.01};
 
 Estimate estimate(const GraphSize& size, Strategy strategy, const Backend& graph, const HeatOptions& heat) {
@@ -33,7 +33,7 @@ Estimate estimate(const GraphSize& size, Strategy strategy, const Backend& graph
           base.seconds + graph.cost.seconds * n + cost.first_map_seconds};
 }
 
-/// Of the graph.
+/// Number of vertices that the graph will have.
 Index vertices_of(const io::Geometry& input, const Backend& backend, const InputOptions& options) {
   return static_cast<Index>(input.points.size() + (backend.more_vertices ? backend.more_vertices(input, options) : 0));
 }
@@ -44,7 +44,7 @@ HeatOptions heat_options(const SolveOptions& solve) {
   return heat;
 }
 
-/// What is told of one strategy.
+/// The estimate for one strategy, as text and for programs.
 struct Told {
   std::string text;
   nlohmann::ordered_json json;
@@ -61,7 +61,7 @@ void tell(const GraphSize& size, const std::string& backend, Strategy chosen, co
                            {"n", size.vertices},
                            {"backend", backend},
                            {"strategy", to_string(chosen)}};
-  std::string text = fmt::format("{} vertices, backend {}\n", size.vertices, backend);
+  std::string text = fmt::format("vertices: {}, backend {}\n", size.vertices, backend);
   for (Strategy strategy : {Strategy::global, Strategy::march}) {
     const Told one = of_strategy(strategy);
     j[std::string(to_string(strategy))] = one.json;
@@ -69,7 +69,7 @@ void tell(const GraphSize& size, const std::string& backend, Strategy chosen, co
   }
   const double memory = machine_memory();
   j["machine_bytes"] = memory;
-  text += fmt::format("this machine lets it take {}\n", bytes_as_text(static_cast<std::int64_t>(memory)));
+  text += fmt::format("memory available on this machine: {}\n", bytes_as_text(static_cast<std::int64_t>(memory)));
   write_json(json, j);
   if (json != "-") print(text);
 }
@@ -83,7 +83,7 @@ void estimate_from_size(const LogmapOptions& options) {
        [&](Strategy strategy) { return told(estimate(size, strategy, backend, heat)); });
 }
 
-/// Of the graph that the map would be made on; what it took until then is known.
+/// Estimates from the graph of the map, which is built for that. Time and memory up to then are measured.
 void estimate_from_graph(const LogmapOptions& options) {
   Journal journal(Verbosity::quiet);
   const Input input = options.input.around_source

@@ -6,8 +6,8 @@
 
 namespace ahm::app {
 
-/// Tells what time and memory a map would take by either strategy. Without a source from the size of the input, for which nothing
-/// but the reader runs; with one from the graph, which is built.
+/// Prints the estimated time and memory of a map for each strategy. Without a source it only reads the input and estimates from its
+/// size. With a source it builds the graph and estimates from that.
 void run_estimate(const LogmapOptions& options, bool has_source);
 
 }  // namespace ahm::app

@@ -32,16 +32,17 @@ void run(const InfoOptions& options) {
 
 void offer(CLI::App& app, InfoOptions& o) {
   add_input(app, o.input);
-  add_parsed(app, "--json", o.output.json, non_empty, "FILE|-", "Write the same for programs; -: to standard output");
+  add_parsed(app, "--json", o.output.json, non_empty, "FILE|-",
+             "Write the report as JSON to FILE, or to standard output (-)");
   add_parsed(app, "--k", o.input.k, integer_parser(3), "N",
-             "Neighbours per point when looking for components (default 30)");
+             "Neighbors per point in the search for components (default 30)");
   add_threads(app, o.input);
 }
 
 }  // namespace
 
 Subcommand add_info(CLI::App& program) {
-  return subcommand<InfoOptions>(program, "info", "What is in a file, what is wrong with it, what to run on it",
+  return subcommand<InfoOptions>(program, "info", "Contents and defects of a file, and a command to run on it",
                                  "Example:\n  ahm info scan.pcd", offer, run);
 }
 

@@ -19,12 +19,13 @@ namespace {
 constexpr const char* inverse_footer =
     "SPEC is 123, x,y,z or face:7:.2,.3,.5 as in 'ahm logmap'.\n"
     "POINTS is a list 'u,v u,v ...' or a file with one pair per line, in the unit of INPUT.\n"
-    "OUTPUT is .csv, .jsonl, .ply or .vtp; one row per pair, nan where the map is not to be trusted or has no such "
-    "point:\n"
-    "  index         of the pair, from 0 (.csv, .jsonl)\n"
-    "  u,v           as given                        x,y,z         on the surface\n"
-    "  nx,ny,nz      its normal, on the source's side\n"
-    "  hx,hy,hz      heading of u there: unit, in the surface\n"
+    "OUTPUT is .csv, .jsonl, .ply or .vtp; one row per pair. Numbers are nan where the map has no such point, or its\n"
+    "quality there is below --min-quality:\n"
+    "  index     number of the pair, from 0 (.csv, .jsonl)\n"
+    "  u,v       the pair\n"
+    "  x,y,z     position on the surface\n"
+    "  nx,ny,nz  unit normal of the surface, on the side of the source's normal\n"
+    "  hx,hy,hz  unit direction of the u axis there, tangential to the surface\n"
     "\n"
     "Example:\n"
     "  ahm inverse scan.ply --source 17 --at '0.1,0 0.1,0.05' -o points.csv";
@@ -38,7 +39,7 @@ struct InverseCommandOptions {
   double min_quality = trusted_quality;
 };
 
-/// Returns how many of the points the surface has.
+/// Writes the points. @return how many of them are on the surface
 std::size_t write(const InverseCommandOptions& options, const InverseMap& inverse) {
   std::vector<double> us, vs;
   const Vec3 none{NAN, NAN, NAN};
@@ -61,7 +62,7 @@ std::size_t write(const InverseCommandOptions& options, const InverseMap& invers
   return found;
 }
 
-/// From the source to the farthest of the points.
+/// Distance in the map from the source to the farthest of the points.
 double reach(const std::vector<std::array<double, 2>>& points) {
   double longest = 0;
   for (const auto& [u, v] : points) longest = std::max(longest, std::hypot(u, v));
@@ -77,8 +78,7 @@ void run(const InverseCommandOptions& options) {
   const LogMap map = solve(options.solve, input, options.source.spec, source, journal);
 
   const std::vector<double> quality = map_quality(input.graph(), map, options.solve.threads);
-  comment_on_quality(to_rows(input.surface().to_rows(map), quality), "start nearer to the points that are looked up",
-                     journal);
+  comment_on_quality(to_rows(input.surface().to_rows(map), quality), "choose a source closer to POINTS", journal);
 
   journal.start("write");
   const std::size_t found =
@@ -87,14 +87,15 @@ void run(const InverseCommandOptions& options) {
   j["source"] = {{"spec", to_string(options.source.spec)}, {"position", source.position}};
   j["points"] = options.points.size();
   j["found"] = found;
-  deliver(std::move(j), fmt::format("{} of {} points lie on the surface\n", found, options.points.size()),
+  deliver(std::move(j), fmt::format("points found on the surface: {} of {}\n", found, options.points.size()),
           options.output, journal);
 }
 
 void offer(CLI::App& app, InverseCommandOptions& o) {
   add_input(app, o.input);
-  add_source(app, o.source, "Where the map starts, see below")->required();
-  add_parsed(app, "--at", o.points, parse_plane_points, "POINTS", "Coordinates to look up, see below")->required();
+  add_source(app, o.source, "Source of the map, see below")->required();
+  add_parsed(app, "--at", o.points, parse_plane_points, "POINTS", "Coordinates (u, v) to look up, see below")
+      ->required();
   add_table_output(app, o.output)->required();
   add_min_quality(app, o.min_quality);
   add_u_axis(app, o.source);
@@ -102,7 +103,7 @@ void offer(CLI::App& app, InverseCommandOptions& o) {
   add_tolerance(app, o.solve);
   add_strategy(app, o.solve);
   add_graph_options(app, o.input, o.solve);
-  add_local(app, o.input, "To the farthest of POINTS");
+  add_local(app, o.input, "Up to the farthest of POINTS");
   add_json(app, o.output);
   add_verbosity(app, o.output.verbosity);
 }
@@ -110,7 +111,7 @@ void offer(CLI::App& app, InverseCommandOptions& o) {
 }  // namespace
 
 Subcommand add_inverse(CLI::App& program) {
-  return subcommand<InverseCommandOptions>(program, "inverse", "Points of a surface at given coordinates, with frames",
+  return subcommand<InverseCommandOptions>(program, "inverse", "Points of a surface at coordinates (u, v), with frames",
                                            inverse_footer, offer, run);
 }
 

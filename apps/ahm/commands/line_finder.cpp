@@ -142,7 +142,7 @@ SurfacePoint point_on_surface(const Input& input, const SourceSpec& spec, const 
   position_of(input, spec, option);
   if (const auto* position = std::get_if<SourcePosition>(&spec))
     return input.surface().closest_point(position->position).point;
-  place(input, spec, std::nullopt, option);  // checks
+  place(input, spec, std::nullopt, option);  // checks the row or face
   return point_of(input, spec);
 }
 

@@ -21,41 +21,45 @@ namespace ahm::app {
 namespace {
 
 constexpr const char* local_maps_footer =
-    "OUTPUT is a NumPy archive. Entry e of source s, indptr[s] <= e < indptr[s+1], nearest first:\n"
-    "  sources[s]    row of INPUT             frames[s]     u axis, v axis and normal in space\n"
-    "  indices[e]    row of the neighbour     log[e]        its coordinates u, v in the source's frame\n"
-    "  distance[e]   along the surface        transport[e]  turns u + iv into the neighbour's frame\n"
-    "  weight[e]     area of the neighbour\n"
-    "With --pad the arrays are sources x K, and mask says what is there.\n"
+    "OUTPUT is a NumPy archive. The entries e of source s are indptr[s] <= e < indptr[s+1], nearest first:\n"
+    "  sources[s]    row of the source in INPUT\n"
+    "  frames[s]     u axis, v axis and normal of the source in space\n"
+    "  indices[e]    row of the neighbor in INPUT\n"
+    "  log[e]        coordinates u, v of the neighbor in the frame of the source\n"
+    "  distance[e]   distance along the surface\n"
+    "  transport[e]  complex number: multiplies u + iv in the source's frame to give the vector in the neighbor's\n"
+    "                frame; 2 x 2 matrices on surfaces that are not orientable\n"
+    "  weight[e]     area of the neighbor\n"
+    "With --pad the arrays have the shape sources x K instead, and mask is 1 for entries that exist.\n"
     "\n"
     "Example:\n"
-    "  ahm local-maps scan.ply --radius 0.02 --k 32 --pad --float32 -o neighbours.npz";
+    "  ahm local-maps scan.ply --radius 0.02 --k 32 --pad --float32 -o neighbors.npz";
 
 struct LocalMapsOptions {
   InputOptions input;
   SolveOptions solve;
   OutputOptions output;
   double radius = 0;
-  Index nearest = 0;            ///< 0: all
-  std::string sources = "all";  ///< or a file of row numbers
-  bool pad = false;             ///< rows of `nearest` entries and a mask instead of compressed rows
+  Index nearest = 0;            ///< neighbors per source; 0: all
+  std::string sources = "all";  ///< all, or a file of row numbers
+  bool pad = false;             ///< write `nearest` entries per source and a mask instead of compressed rows
   bool float32 = false;
 };
 
 void check_options(const LocalMapsOptions& options) {
   check_results(options.input.path, options.output, {".npz"});
-  // The list is read once the number of rows is known, and must still be there then.
+  // The list is read later, when the number of rows is known, so no output may replace it.
   if (options.sources != "all")
     check_outputs({options.sources}, {{"--output", options.output.output}, {"--json", options.output.json}}, false);
-  if (!io::has_npz()) throw InvalidArgument("this build of ahm cannot write .npz files; it was built without minizip");
+  if (!io::has_npz()) throw InvalidArgument("this build of ahm cannot write .npz files; build it with minizip");
 }
 
-/// Row numbers, one per line.
+/// Reads row numbers, one per line.
 std::vector<Row> read_rows(const std::string& path, Index rows) {
   const std::string name = "--sources " + path;
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored))
-    throw IoError(name + ": cannot be read; write all, or the name of a file of row numbers");
+    throw IoError(name + ": cannot be read; write 'all' or the name of a file with row numbers");
   std::vector<Row> result;
   for_each_line(path, name, "row numbers", [&](const std::string& line) {
     result.emplace_back(static_cast<Index>(parse_integer(line, 0, rows - 1)));
@@ -69,7 +73,8 @@ std::vector<Row> wanted_rows(const LocalMapsOptions& options, const RowMap& rows
     for (Row row : result)
       if (!rows.vertex(row))
         throw InvalidArgument(
-            fmt::format("--sources {}: row {} is no vertex of the surface", options.sources, row.index));
+            fmt::format("--sources {}: row {} is not a vertex of the surface; remove it from the list", options.sources,
+                        row.index));
     return result;
   }
   std::vector<Row> result;
@@ -85,7 +90,8 @@ std::vector<Index> numbers_of(const std::vector<Row>& rows) {
   return numbers;
 }
 
-/// Rows of `count` entries: `values` has `width` numbers per entry, what is missing is 0.
+/// Compressed rows as rows of `count` entries, filled up with zeros.
+/// @param values  `width` numbers per entry
 template <class T>
 std::vector<T> padded(const RowLocalMaps& maps, const std::vector<T>& values, std::size_t width, std::size_t count) {
   std::vector<T> result(static_cast<std::size_t>(maps.sources()) * count * width, T{});
@@ -129,32 +135,32 @@ void write(const LocalMapsOptions& options, const RowLocalMaps& maps, const std:
   add("log", maps.logs, {2}, real);
   add("distance", maps.distances, {}, real);
   add("weight", maps.weights, {}, real);
-  // Surfaces that cannot be oriented carry 2 x 2 matrices, some of them reflections.
+  // Surfaces that are not orientable have 2 x 2 matrices, some of them reflections.
   add("transport", maps.transports, rotations ? Shape{} : Shape{2, 2}, rotations ? complex : real);
   file.commit();
 }
 
-/// Maps around a vertex of very many neighbours are each solved on all of these.
+/// Warns of a vertex with very many neighbors: each map around it is solved on all of them.
 void comment_on_hubs(const TangentGraph& graph, std::size_t sources, Journal& journal) {
-  constexpr double long_work = 3e8;  // a minute
+  constexpr double long_work = 3e8;  // about a minute
   std::size_t most = 0;
   for (Index i = 0; i < graph.size(); ++i) most = std::max(most, graph.star(i).degree());
   if (const auto degree = static_cast<double>(most); degree * static_cast<double>(std::min(most, sources)) > long_work)
     journal.add_warning(
-        fmt::format("a vertex has {} neighbours, and each map around it is solved on all of them: this takes long; "
-                    "choose --sources",
+        fmt::format("a vertex has {} neighbors, and each map around it is solved on all of them: this takes long; "
+                    "select fewer rows with --sources",
                     most));
 }
 
-/// Radii in other units, or of too few edges, are seen by neighbourhoods without neighbours.
+/// Warns if most neighborhoods have no neighbors: the radius is in another unit, or too small for the edges.
 void comment_on_lonely(const RowLocalMaps& maps, const LocalMapsOptions& options, const Input& input,
                        Journal& journal) {
   Index lonely = 0;
   for (Index s = 0; s < maps.sources(); ++s) lonely += maps.indptr[s + 1] - maps.indptr[s] == 1;
   if (options.radius > 0 && options.nearest != 1 && 2 * lonely > maps.sources())
-    journal.add_warning(
-        fmt::format("--radius {}: {} of {} neighbourhoods hold their source alone; edges are {:.4g} long in the mean",
-                    options.radius, lonely, maps.sources(), input.mean_edge_length()));
+    journal.add_warning(fmt::format(
+        "--radius {}: neighborhoods without neighbors: {} of {}; the mean edge length is {:.4g}, raise --radius",
+        options.radius, lonely, maps.sources(), input.mean_edge_length()));
 }
 
 void run(const LocalMapsOptions& options) {
@@ -178,7 +184,7 @@ void run(const LocalMapsOptions& options) {
   const RowLocalMaps maps = row_local_maps(input.surface(), vertices, map_options);
 
   if (std::any_of(maps.weights.begin(), maps.weights.end(), [](double w) { return std::isnan(w); }))
-    journal.add_warning("weight: no double holds squares of such lengths; they are given as nan");
+    journal.add_warning("weight: the squares of the lengths overflow; they are written as nan");
 
   comment_on_lonely(maps, options, input, journal);
 
@@ -191,20 +197,20 @@ void run(const LocalMapsOptions& options) {
   j["sources"] = wanted.size();
   j["entries"] = maps.neighbors.size();
   j["mean_neighbours"] = mean;
-  deliver(j, fmt::format("{} of {:.1f} vertices on average\n", counted(wanted.size(), "neighbourhood"), mean),
+  deliver(j, fmt::format("{} with {:.1f} vertices on average\n", counted(wanted.size(), "neighborhood"), mean),
           options.output, journal);
 }
 
 void offer(CLI::App& app, LocalMapsOptions& o) {
   add_input(app, o.input);
-  add_parsed(app, "--radius", o.radius, parse_positive, "R", "Of the neighbourhoods, along the surface");
-  add_output(app, o.output)->required()->description("File to write, .npz");
+  add_parsed(app, "--radius", o.radius, parse_positive, "R", "Radius of the neighborhoods, along the surface");
+  add_output(app, o.output)->required()->description("Output file, .npz");
   add_parsed(app, "--k", o.nearest, integer_parser(1), "K",
-             "Keep only so many nearest, the source included; without --radius: however far they are");
+             "Keep the K nearest vertices, including the source; without --radius at any distance");
   add_parsed(app, "--sources", o.sources, non_empty, "all|FILE",
-             "all (default), or a file of rows of INPUT, counted from 0");
-  app.add_flag("--pad", o.pad, "Fixed rows of K entries and a mask; needs --k");
-  app.add_flag("--float32", o.float32, "Numbers in single precision");
+             "all (default), or a file with row numbers of INPUT, counted from 0");
+  app.add_flag("--pad", o.pad, "Write K entries per source and a mask; requires --k");
+  app.add_flag("--float32", o.float32, "Write numbers in single precision");
   add_variant(app, o.solve);
   add_backend(app, o.input);
   add_t_coef(app, o.solve);
@@ -216,14 +222,15 @@ void offer(CLI::App& app, LocalMapsOptions& o) {
   add_verbosity(app, o.output.verbosity);
   app.callback([&o] {
     if (o.radius == 0 && o.nearest == 0) throw CLI::RequiredError("--radius, or --k");
-    if (o.pad && o.nearest == 0) throw CLI::ValidationError("--pad", "needs --k");
+    if (o.pad && o.nearest == 0) throw CLI::ValidationError("--pad", "requires --k");
   });
 }
 
 }  // namespace
 
 Subcommand add_local_maps(CLI::App& program) {
-  return subcommand<LocalMapsOptions>(program, "local-maps", "Log maps of all neighbourhoods, for learning on surfaces",
+  return subcommand<LocalMapsOptions>(program, "local-maps",
+                                      "Log maps of the neighborhood of each vertex, for learning on surfaces",
                                       local_maps_footer, offer, run);
 }
 

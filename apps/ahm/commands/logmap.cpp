@@ -39,39 +39,39 @@
 
 namespace ahm::app {
 
-/// The parts of a finished run. References live as long as the call that is given them.
+/// The parts of a finished run. The references are valid during one call.
 struct LogmapRun {
   const std::string& path;
   const SourceSpec& spec;
   const SolveOptions& options;
   const Input& input;
-  const std::optional<LogMapSolver>& solver;  ///< of heat
+  const std::optional<LogMapSolver>& solver;  ///< for heat only
   const SurfaceSource& source;
   const LogMap& map;
   const RowLogMap& rows;
-  const std::vector<double>& quality;  ///< by row
-  bool is_named = false;               ///< whether the text begins with the input and the source
+  const std::vector<double>& quality;  ///< quality of each row
+  bool is_named = false;               ///< the text begins with the input and the source
 };
 
-/// Delivers the summaries, for programs and for people.
+/// Writes the summaries, for programs and for users.
 void report(const LogmapRun& run, const OutputOptions& output, Journal& journal);
 
-/// Before the work: whether the files of a map can be written, and are none of the inputs.
+/// Checks before the work that the files of a map can be written and do not replace an input.
 /// @throws IoError, InvalidArgument
 void check_log_map(const LogmapOptions& options, const std::vector<std::string>& inputs);
 
-/// Does a part of the work, and tells where it fails. @param what  for the message
-/// @param alone  whether it is all there is to do: then what it throws is thrown
-/// @param tells  else in silence
-/// @return whether it was done
+/// Runs a part of the work. If it fails, prints the error where `tells` is set, and continues.
+/// @param what   input, for the message
+/// @param alone  this is all the work: exceptions are passed on
+/// @return whether it succeeded
 bool attempt(const std::string& what, bool alone, const std::function<void()>& work, bool tells = true);
 
-/// Reads one file and makes its maps; the graph is built and factored once for all of them, unless the options make it
-/// from the source. With several maps a failure, or the first ten of many, is told and the next one is made.
-/// @param maps  of one file, alike but for their sources and outputs
+/// Reads one file and makes its maps. The graph is built and factored once for all maps, unless it depends on the source. With
+/// several maps the first ten failures are printed, and the other maps are made.
+/// @param maps   options of the maps of one file; they differ only in sources and outputs
 /// @param alone  as for `attempt`
-/// @return how many failed
-/// @throws Cancelled; what reading and opening throw; where it is alone, what solving and writing throw
+/// @return number of maps that failed
+/// @throws Cancelled; errors of reading and opening; with `alone` also errors of solving and writing
 std::size_t run_log_maps(const std::vector<LogmapOptions>& maps, bool alone);
 
 namespace {
@@ -86,11 +86,11 @@ std::size_t count(const RowLogMap& rows, Status status) {
 double largest_distance(const RowLogMap& rows) {
   double largest = 0;
   for (double d : rows.distance)
-    if (d > largest) largest = d;  // false for NaN
+    if (d > largest) largest = d;  // false if d is NaN
   return largest;
 }
 
-/// Of the numbers that are not NaN.
+/// Median of the numbers that are not NaN; NaN if there are none.
 double median(std::vector<double> values) {
   std::erase_if(values, [](double v) { return std::isnan(v); });
   return values.empty() ? NAN : detail::median(values);
@@ -155,7 +155,7 @@ std::string as_text(const LogmapRun& run) {
   if (!run.rows.error_estimate.empty())
     text += fmt::format(", median error of (u, v) about {:.2g}", median(run.rows.error_estimate));
   if (const auto bounded = std::ranges::count(run.rows.bounded, 1); bounded > 0)
-    text += fmt::format(", {} only a bound (the straight line)",
+    text += fmt::format(", {} only a lower bound (the straight line)",
                         bounded == 1 ? "1 distance is" : fmt::format("{} distances are", bounded));
   return text + "\n";
 }
@@ -168,7 +168,7 @@ void report(const LogmapRun& run, const OutputOptions& output, Journal& journal)
 
 namespace {
 
-/// Failures of the maps of one file.
+/// Number of failed maps per file that are reported one by one.
 constexpr std::size_t most_told = 10;
 
 void write_results(const LogmapOptions& options, const SurfaceSource& source, const RowLogMap& rows,
@@ -182,10 +182,11 @@ void write_results(const LogmapOptions& options, const SurfaceSource& source, co
   results.write(table, scene, journal);
 }
 
-/// The faces as they were given, with the map at their corners.
+/// Writes the faces of the input with the map at their corners.
 void write_corners(const std::string& path, const Input& input, const LogMap& map) {
   const Surface& surface = input.surface();
-  if (surface.faces().size() == 0) throw InvalidArgument("--corners " + path + ": the surface has no faces");
+  if (surface.faces().size() == 0)
+    throw InvalidArgument("--corners " + path + ": requires a mesh, the surface has no faces");
   const SurfaceFaces faces = given_faces(input.geometry);
   const std::vector<double> coordinates = at_given_corners(input, surface.to_corners(map));
   const auto is_mapped = [&](std::size_t f) {
@@ -203,7 +204,7 @@ void write_corners(const std::string& path, const Input& input, const LogMap& ma
   io::write_textured(path, parts);
 }
 
-/// @throws InvalidArgument where OUTPUT is a file for textures
+/// @throws InvalidArgument (OUTPUT is a format for textured meshes)
 void check_for_rows(const OutputOptions& output) {
   const std::string extension = io::lower_extension(output.output);
   const auto is_in = [&](io::Use use) {
@@ -212,13 +213,14 @@ void check_for_rows(const OutputOptions& output) {
   };
   if (output.format.empty() && is_in(io::Use::write_textured) && !is_in(io::Use::write))
     throw InvalidArgument(fmt::format(
-        "--output {0}: {1} files have no rows for numbers; --corners {0} writes the faces with u,v at their corners",
+        "--output {0}: {1} files cannot store one row per vertex; use --corners {0} for the faces with u,v at corners",
         output.output, extension));
 }
 
-/// From a source on an input that is open. @param maps  of the input; made where there are none yet
-/// @param count  of maps that `maps` is to make
-/// @param is_named  whether the summary says of which input it is
+/// Makes the map of one source on an open input, and writes its files and summary.
+/// @param maps      solvers for the input; made if there are none yet
+/// @param count     number of maps that `maps` will make
+/// @param is_named  the summary names the input
 void map_from_source(const LogmapOptions& options, const Input& input, std::optional<Maps>& maps, std::size_t count,
                      bool is_named, Journal& journal) {
   const SurfaceSource source = resolve(options.source, input, options.input.threads);
@@ -240,7 +242,7 @@ void map_from_source(const LogmapOptions& options, const Input& input, std::opti
   front.reset();
   if (options.input.around_source) settle_left_out(input, source, *options.solve.radius, rows);
   comment_on_statuses(rows.status, options.input.path, journal);
-  comment_on_quality(quality, "keep to what is near with --radius, or start elsewhere", journal);
+  comment_on_quality(quality, "limit the map with --radius, or choose another source", journal);
 
   Results results(options.output, input, options.input);
   const std::vector<Vec3> away =
@@ -252,7 +254,7 @@ void map_from_source(const LogmapOptions& options, const Input& input, std::opti
          options.output, journal);
 }
 
-/// Whether the surface depends on the source.
+/// Whether the surface is built for the source, so that each source requires its own.
 bool is_made_for_source(const LogmapOptions& options) {
   return options.input.around_source || options.input.voxel || options.input.outliers;
 }
@@ -262,7 +264,7 @@ bool is_made_for_source(const LogmapOptions& options) {
 void check_log_map(const LogmapOptions& options, const std::vector<std::string>& inputs) {
   check_for_rows(options.output);
   check_results(options.input.path, options.output);
-  around_source(options.input, options.solve.radius);  // checks
+  around_source(options.input, options.solve.radius);  // checks --local and --radius
   const OutputOptions& output = options.output;
   std::vector<OutputPath> files{{"--output", output.output}, {"--json", output.json}, {"--view", output.view}};
   if (!options.corners.empty()) {
@@ -312,44 +314,47 @@ std::size_t run_log_maps(const std::vector<LogmapOptions>& maps, bool alone) {
     journal.reset();
   }
   if (failed > most_told)
-    say(fmt::format("ahm: error: {}: {} more of its maps failed\n", first.input.path, failed - most_told));
+    say(fmt::format("ahm: error: {}: more failed maps: {}\n", first.input.path, failed - most_told));
   return failed;
 }
 
 namespace {
 
 constexpr const char* logmap_footer =
-    "Several files INPUT and several sources (--source again, or --sources) make a map each.\n"
+    "Each INPUT file is mapped from each source (--source, which can be repeated, and --sources).\n"
     "\n"
     "SPEC is one of\n"
     "  123              a vertex of INPUT, counted from 0\n"
     "  1.5,0,-2         the vertex nearest to this position\n"
-    "  face:7:.2,.3,.5  a point in face 7, by barycentric coordinates, one per corner (meshes)\n"
+    "  face:7:.2,.3,.5  a point in face 7 in barycentric coordinates, one per corner (meshes)\n"
     "\n"
-    "SOURCES is a list of these between blanks, or a file with one on each line.\n"
+    "SOURCES is a list of SPECs separated by blanks, or a file with one SPEC per line.\n"
     "\n"
-    "OUTPUT  .csv, .jsonl, .ply, .pcd or .vtp, or - (standard output); one row per vertex of INPUT, in its order:\n"
+    "OUTPUT  .csv, .jsonl, .ply, .pcd, .vtp or - (standard output); one row per vertex of INPUT, in the same order:\n"
     "          index,x,y,z,u,v,distance,angle,status,quality,spread,error_estimate,bounded,\n"
     "          with --gradient also gx,gy,gz: unit vector in space, away from the source along the surface\n"
-    "        u,v             the log map. Polar and exact: length and direction of the shortest path. Heat: the\n"
-    "                        mean over the paths of heat, which cancel at the cut locus; straight behind holes\n"
-    "        distance        along the surface; by heat it is not |(u, v)|\n"
-    "        quality         in (0, 1]; below 0.5 expect u,v to be wrong by more than a tenth of the distance\n"
-    "        spread          large at the cut locus, where neighbors lie far apart in the map\n"
+    "        u,v             the log map. Polar and exact: length and direction of the shortest path. Heat: a mean\n"
+    "                        over paths, which shrinks to zero at the cut locus; behind holes as in the plane\n"
+    "        distance        length of the shortest path along the surface; for heat it differs from |(u, v)|\n"
+    "        quality         reliability of u,v in (0, 1]; below 0.5 errors may exceed a tenth of the distance\n"
+    "        spread          uncertainty of u,v as a length; large at the cut locus, where the map tears\n"
     "        error_estimate  expected error of (u, v); polar maps only\n"
-    "        bounded         1 where distance is only a lower bound, the straight line in space; not for exact\n"
+    "        bounded         1 where distance is only a lower bound, the straight line in space; not for exact maps\n"
     "        The numbers are nan where status is not ok:\n"
-    "          disconnected  from the source                beyond_radius  farther than --radius\n"
-    "          unreached     too far for double precision  removed        dropped, replaced, or in no face\n"
+    "          disconnected   not connected to the source\n"
+    "          beyond_radius  farther than --radius\n"
+    "          unreached      too far for double precision\n"
+    "          removed        dropped, replaced by another point, or in no face\n"
     "CORNERS .obj (with .mtl), .glb or .ply: the faces of INPUT with the u,v of every corner as texture coordinates\n"
-    "        (.glb: u, 1 - v; .ply: s, t and the row as point); where the mesh is cut a vertex has several, and torn\n"
-    "        faces are laid out anew, so that OUTPUT's u,v may be none of them. Faces without are the object 'rest'\n"
-    "        (.ply: s, t are nan)\n"
+    "        (.glb: u, 1 - v; .ply: s, t, and the row as point). A vertex where the mesh is cut has several u,v.\n"
+    "        Faces that the map tears are unfolded separately, so their u,v may differ from those in OUTPUT.\n"
+    "        Faces without u,v form the object 'rest' (.ply: s, t are nan)\n"
     "\n"
-    "Of several maps OUTPUT, CORNERS and the FILEs of --view and --json are names in which {} stands for that of\n"
-    "INPUT (with several sources followed by _0, _1, ...), or folders: DIR/ is DIR/{}_map.csv (.png, .obj, .json).\n"
-    "--json - tells one line per map. What fails is told, the others are made, and the exit status is 1.\n"
-    "Files that exist are replaced when the new ones are complete, inputs never; see --no-overwrite.\n"
+    "For several maps, OUTPUT, CORNERS and the FILEs of --view and --json are patterns or folders. {} in a pattern is\n"
+    "replaced by the name of INPUT, with _0, _1, ... appended for several sources. A folder DIR/ means\n"
+    "DIR/{}_map.csv (.png, .obj, .json). --json - prints one line per map. If a map fails, the program reports the\n"
+    "error, makes the other maps, and exits with status 1.\n"
+    "Existing files are replaced once the new ones are complete (see --no-overwrite). Inputs are never replaced.\n"
     "\n"
     "Examples:\n"
     "  ahm logmap scan.ply --source 0 -o map.csv\n"
@@ -359,20 +364,21 @@ constexpr const char* logmap_footer =
     "  ahm logmap mesh.obj --source face:7:.2,.3,.5 --u-axis 1,0,0 -o map.ply\n"
     "  ahm logmap scan.xyz --source 17 -o map.csv --json - | jq .status";
 
-/// What the user wrote: every input is mapped from every source.
+/// The command line: every input is mapped from every source.
 struct LogmapCommand {
   std::vector<std::string> inputs;
   std::vector<SourceSpec> sources;
-  LogmapOptions map;  ///< its names of files may be patterns
+  LogmapOptions map;  ///< options of all maps; file names may be patterns
 };
 
-/// The files of one of several maps. @throws InvalidArgument where one name stands for all of them
+/// Sets the file names of one of several maps. @throws InvalidArgument (a name is not a pattern)
 void name_outputs(LogmapOptions& map, const std::string& stem) {
   const auto fill = [&](std::string& name, const char* option, const char* ending) {
     if (name.empty()) return;
     if (!is_pattern(name))
-      throw InvalidArgument(fmt::format(
-          "{} {}: names one file for several maps; write a folder, or {{}} for the name of the input", option, name));
+      throw InvalidArgument(
+          fmt::format("{} {}: this is one file for several maps; write a folder, or {{}} in place of the input's name",
+                      option, name));
     name = filled(name, stem, ending);
   };
   const std::string ending = map.output.format.empty() ? ".csv" : map.output.format;
@@ -387,7 +393,7 @@ bool has_pattern(const LogmapOptions& map) {
   return is_pattern(o.output) || is_pattern(o.view) || is_pattern(map.corners) || is_pattern(o.json);
 }
 
-/// No two maps may go to the same file.
+/// Checks that no two maps are written to the same file. @throws InvalidArgument
 void check_different(const std::vector<std::vector<LogmapOptions>>& files) {
   std::map<std::string, std::string> inputs;
   for (const auto& maps : files)
@@ -395,12 +401,12 @@ void check_different(const std::vector<std::vector<LogmapOptions>>& files) {
       for (const std::string& name : {map.output.output, map.output.view, map.corners, map.output.json}) {
         if (name.empty() || name == "-") continue;
         if (const auto [other, is_new] = inputs.emplace(name, map.input.path); !is_new)
-          throw InvalidArgument(fmt::format("{} would be written for {} and for {}; give the inputs different names",
-                                            name, other->second, map.input.path));
+          throw InvalidArgument(fmt::format("{} is the output of both {} and {}; rename one of these inputs", name,
+                                            other->second, map.input.path));
       }
 }
 
-/// All maps, by inputs, with the files that are theirs.
+/// The options of all maps, by input, with their own file names.
 std::vector<std::vector<LogmapOptions>> planned(const LogmapCommand& command) {
   const bool one = command.inputs.size() * command.sources.size() == 1;
   std::vector<std::vector<LogmapOptions>> files;
@@ -422,7 +428,7 @@ std::vector<std::vector<LogmapOptions>> planned(const LogmapCommand& command) {
 
 void run(const LogmapCommand& command) {
   if (command.map.estimate) {
-    if (command.inputs.size() > 1) throw InvalidArgument("--estimate: takes one INPUT");
+    if (command.inputs.size() > 1) throw InvalidArgument("--estimate: requires a single INPUT");
     LogmapOptions map = command.map;
     map.input.path = command.inputs.front();
     if (!command.sources.empty()) map.source.spec = command.sources.front();
@@ -436,7 +442,7 @@ void run(const LogmapCommand& command) {
     attempt(maps.front().input.path, count == 1, [&] { failed_here = run_log_maps(maps, count == 1); });
     failed += failed_here;
   }
-  if (failed > 0) throw Error(fmt::format("{} of {} maps were not made", failed, count));
+  if (failed > 0) throw Error(fmt::format("{} of {} maps failed", failed, count));
 }
 
 void offer_method(CLI::App& app, LogmapOptions& o) {
@@ -446,19 +452,18 @@ void offer_method(CLI::App& app, LogmapOptions& o) {
   add_variant(app, o.solve)->group(group);
   add_backend(app, o.input)->group(group);
   add_t_coef(app, o.solve)->group(group);
-  add_parsed(app, "--radius", o.solve.radius, parse_positive, "R",
-             "Leave out everything farther than this from the source")
+  add_parsed(app, "--radius", o.solve.radius, parse_positive, "R", "Map only points within this distance of the source")
       ->group(group);
   add_u_axis(app, o.source)->group(group);
   add_parsed(app, "--ordering", o.solve.ordering,
              choice_of<Ordering>({{"amd", Ordering::amd}, {"nested-dissection", Ordering::nested_dissection}}), "NAME",
-             "Of the factorization: amd (default) or nested-dissection")
+             "Ordering of the factorization: amd (default) or nested-dissection")
       ->group(group);
   add_strategy(app, o.solve)->group(group);
   add_parsed(app, "--accuracy", o.solve.accuracy, parse_positive, "A",
-             "Of a march, against a global solve, relative (default 1e-9)")
+             "Relative accuracy of a march, compared with a global solve (default 1e-9)")
       ->group(group);
-  app.add_flag("--gradient", o.gradient, "Add the direction away from the source to the rows of OUTPUT")->group(group);
+  app.add_flag("--gradient", o.gradient, "Add columns with the direction away from the source to OUTPUT")->group(group);
   add_threads(app, o.input, &o.solve)->group(group);
 }
 
@@ -475,23 +480,24 @@ void offer(CLI::App& app, LogmapCommand& command) {
   add_inputs(app, o.input, command.inputs);
   add_sources(app, command.sources);
   auto* output = add_table_output(app, o.output);
-  add_parsed(app, "--corners", o.corners, non_empty, "CORNERS", "Mesh to write, with u,v at the corners of its faces");
+  add_parsed(app, "--corners", o.corners, non_empty, "CORNERS",
+             "Output mesh with u,v at the corners of its faces, see below");
   auto* estimate = app.add_flag(
       "--estimate", o.estimate,
-      "Tell what time and memory a map would take, and end: from the size of INPUT (evenly sampled, no radius), or\n"
-      "with --source from its graph, which is built for it, to a third. How far a march on a cloud goes on beyond\n"
-      "--radius is not known before: it takes at most what it takes without");
+      "Print the estimated time and memory of a map and exit. Without --source the estimate uses only the\n"
+      "size of INPUT (even sampling, no radius). With --source it builds the graph and is accurate to a third.\n"
+      "On clouds, how far a march continues beyond --radius is unknown; the estimate without radius is a bound");
   app.callback([=, &app, &command, &o] {
-    if (o.input.around_source && !o.solve.radius) throw CLI::ValidationError("--local", "needs --radius");
+    if (o.input.around_source && !o.solve.radius) throw CLI::ValidationError("--local", "requires --radius");
     if (o.solve.strategy == Strategy::global && app.count("--accuracy") > 0)
-      throw CLI::ValidationError("--accuracy", "belongs to a march; --strategy global has none");
+      throw CLI::ValidationError("--accuracy", "requires a march; leave it out with --strategy global");
     if (estimate->count() > 0) return;
     if (command.sources.empty()) throw CLI::RequiredError("--source");
     if (output->count() == 0) throw CLI::RequiredError("--output");
   });
   offer_method(app, o);
   add_cloud_options(app, o.input);
-  add_local(app, o.input, "With --radius");
+  add_local(app, o.input, "Up to --radius, which is required");
   add_mesh_options(app, o.input);
   offer_reports(app, o.output);
 }
@@ -499,8 +505,8 @@ void offer(CLI::App& app, LogmapCommand& command) {
 }  // namespace
 
 Subcommand add_logmap(CLI::App& program) {
-  return subcommand<LogmapCommand>(program, "logmap", "Logarithmic maps of surfaces, one from each source",
-                                   logmap_footer, offer, run);
+  return subcommand<LogmapCommand>(program, "logmap", "Logarithmic maps of surfaces, one per source", logmap_footer,
+                                   offer, run);
 }
 
 }  // namespace ahm::app

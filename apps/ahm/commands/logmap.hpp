@@ -8,15 +8,15 @@
 
 namespace ahm::app {
 
-/// One map: of one input, from one source.
+/// Options of one map: one input, one source.
 struct LogmapOptions {
   InputOptions input;
   SourceOptions source;
   SolveOptions solve;
   OutputOptions output;
-  bool gradient = false;  ///< columns with the direction away from the source
-  std::string corners;    ///< file for the faces with u, v at every corner
-  bool estimate = false;  ///< tell what the run would cost instead of running
+  bool gradient = false;  ///< write columns with the direction away from the source
+  std::string corners;    ///< file for the faces with (u, v) at every corner
+  bool estimate = false;  ///< print the estimated time and memory instead of running
 };
 
 }  // namespace ahm::app

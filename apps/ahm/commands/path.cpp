@@ -18,17 +18,18 @@ constexpr const char* path_footer =
     "POINTS is a list 'SPEC SPEC ...' or a file with one SPEC per line; SPEC is one of\n"
     "  123              a vertex of INPUT, counted from 0\n"
     "  1.5,0,-2         the nearest point of the surface; in files also 1.5 0 -2\n"
-    "  face:7:.2,.3,.5  a point in face 7, by barycentric coordinates, one per corner\n"
-    "PAIRS is a file with two SPECs per line: a path for each, all paths from one start at the cost of one map.\n"
-    "The path is the shortest over the flat faces, exact up to rounding; of several of one length, one of them. Over "
-    "a\n"
-    "cloud it is short to second order in the spacing, from the tangent plane of a point to that of the next.\n"
-    "With --fast it is locally shortest: no curve beside it is shorter, but one on another side of a hill may be.\n"
-    "With --tighten the loop leaves its points and becomes locally shortest, a closed geodesic.\n"
+    "  face:7:.2,.3,.5  a point in face 7 in barycentric coordinates, one per corner\n"
+    "PAIRS is a file with two SPECs per line, one path per line. All paths from the same start share one map.\n"
     "\n"
-    "OUTPUT  .csv, .jsonl, .ply and .vtp with edges, or .obj with lines: where the path starts, crosses an edge,\n"
-    "        bends, and ends: index (.csv, .jsonl), x,y,z and arclength (not in .obj). Of PAIRS also curve, the\n"
-    "        place of the pair in the file, from 0\n"
+    "Over flat faces the path is a shortest one, exact up to rounding. Over a cloud it runs from tangent plane to\n"
+    "tangent plane, and its error is of second order in the spacing.\n"
+    "With --fast the path is locally shortest: no nearby curve is shorter, but one around the other side of a hill\n"
+    "may be.\n"
+    "With --tighten the loop leaves its points and becomes a closed geodesic, which is locally shortest.\n"
+    "\n"
+    "OUTPUT  .csv, .jsonl, .ply and .vtp with edges, or .obj with lines. One row per point where the path starts,\n"
+    "        crosses an edge, bends or ends: index (.csv, .jsonl), x,y,z and arclength (not in .obj). With PAIRS also\n"
+    "        curve, the number of the pair, from 0\n"
     "\n"
     "Examples:\n"
     "  ahm path mesh.ply --from 17 --to 4711 -o path.csv --json -\n"
@@ -45,7 +46,7 @@ struct PathCommandOptions {
   bool closed = false, tighten = false, fast = false;
 };
 
-/// Two SPECs in a line, or six numbers.
+/// Reads two SPECs or six numbers from a line.
 std::array<SourceSpec, 2> parse_pair(const std::string& line) {
   std::istringstream stream(line);
   std::vector<std::string> words;
@@ -54,25 +55,25 @@ std::array<SourceSpec, 2> parse_pair(const std::string& line) {
     return {parse_source(words[0] + "," + words[1] + "," + words[2]),
             parse_source(words[3] + "," + words[4] + "," + words[5])};
   if (words.size() != 2)
-    throw std::invalid_argument(fmt::format("'{}' is no pair of points: give two SPECs, or six numbers", line));
+    throw std::invalid_argument(fmt::format("expected two SPECs or six numbers, found '{}'", line));
   return {parse_source(words[0]), parse_source(words[1])};
 }
 
 std::vector<std::array<SourceSpec, 2>> read_pairs(const std::string& file) {
-  require_file(file, "two SPECs in every line");
+  require_file(file, "two SPECs per line");
   std::vector<std::array<SourceSpec, 2>> pairs;
   for_each_line(file, file, "pairs", [&](const std::string& line) { pairs.push_back(parse_pair(line)); });
   return pairs;
 }
 
-/// From where, through what, to where.
+/// The points of --from, --through and --to in this order.
 std::vector<SourceSpec> stops_of(const PathCommandOptions& options) {
   std::vector<SourceSpec> specs{*options.from};
   for (const auto& more : {options.through, options.to}) specs.insert(specs.end(), more.begin(), more.end());
   return specs;
 }
 
-/// All points that the command names.
+/// All points in the command line.
 std::vector<SourceSpec> named_points(const PathCommandOptions& options) {
   if (options.pairs.empty()) return stops_of(options);
   std::vector<SourceSpec> specs;
@@ -80,7 +81,7 @@ std::vector<SourceSpec> named_points(const PathCommandOptions& options) {
   return specs;
 }
 
-/// Adds the ways from stop to stop, as one curve.
+/// Adds the paths from stop to stop as one curve.
 void go_through(const PathCommandOptions& options, const std::vector<SurfacePoint>& stops,
                 const std::vector<SourceSpec>& specs, const LineFinder& finder, Polylines& path) {
   std::vector<double> lengths;
@@ -88,8 +89,9 @@ void go_through(const PathCommandOptions& options, const std::vector<SurfacePoin
   for (std::size_t k = 1; k < stops.size(); ++k) {
     const FoundLine leg = finder.path(stops[k - 1], stops[k], options.fast);
     if (leg.status != Status::ok)
-      throw InvalidArgument(fmt::format("there is no path from {} to {}: the surface does not connect them",
-                                        to_string(specs[k - 1]), to_string(specs[k])));
+      throw InvalidArgument(
+          fmt::format("there is no path from {} to {}: they lie on different components of the surface",
+                      to_string(specs[k - 1]), to_string(specs[k])));
     const std::size_t first = k > 1 ? 1 : 0;
     curve.points.insert(curve.points.end(), leg.points.begin() + first, leg.points.end());
     if (finder.has_faces()) curve.flat.insert(curve.flat.end(), leg.flat.begin() + first, leg.flat.end());
@@ -99,12 +101,12 @@ void go_through(const PathCommandOptions& options, const std::vector<SurfacePoin
   if (options.tighten) {
     curve = finder.tightened(curve.flat);
     if (!(curve.length > 0))
-      throw InvalidArgument("--tighten: the loop goes around nothing that would hold it, and shrinks to a point");
+      throw InvalidArgument("--tighten: the loop does not enclose a hole or handle and shrinks to a point");
     path.json["length_through_stops"] = length;
     length = curve.length;
   }
   path.add(curve.points);
-  path.text = fmt::format("a {} of {}, {:.6g} long\n", options.tighten ? "closed geodesic" : "path",
+  path.text = fmt::format("a {} of {}, length {:.6g}\n", options.tighten ? "closed geodesic" : "path",
                           counted(path.points.size(), "point"), length);
   path.json["points"] = path.points.size();
   path.json["length"] = length;
@@ -156,44 +158,46 @@ Polylines find_pairs(const PathCommandOptions& options, const LineFinder& finder
     if (ok) ++found, length += path.length;
   }
   if (found < paths.size())
-    journal.add_warning(fmt::format("{} of {} pairs are not connected by the surface and have no path",
+    journal.add_warning(fmt::format("pairs without a path, on different components of the surface: {} of {}",
                                     paths.size() - found, paths.size()));
-  result.text = fmt::format("{} of {}, {:.6g} long together\n", counted(found, "path"),
+  result.text = fmt::format("{} of {}, total length {:.6g}\n", counted(found, "path"),
                             counted(result.points.size(), "point"), length);
   return result;
 }
 
 void run(const PathCommandOptions& options) {
-  run_polyline("path", naming(options.input, named_points(options)), options.output, {},
-               [&](const LineFinder& finder, const Input& input, Journal& journal) {
-                 if (!finder.has_faces() && (options.fast || options.tighten))
-                   throw InvalidArgument(
-                       fmt::format("{}: takes faces, which this input does not have, or which --backend ignores",
-                                   options.fast ? "--fast" : "--tighten"));
-                 return options.pairs.empty() ? find_path(options, finder, input, journal)
-                                              : find_pairs(options, finder, input, journal);
-               });
+  run_polyline(
+      "path", naming(options.input, named_points(options)), options.output, {},
+      [&](const LineFinder& finder, const Input& input, Journal& journal) {
+        if (!finder.has_faces() && (options.fast || options.tighten))
+          throw InvalidArgument(fmt::format("{}: requires faces; the input has none, or --backend ignores them",
+                                            options.fast ? "--fast" : "--tighten"));
+        return options.pairs.empty() ? find_path(options, finder, input, journal)
+                                     : find_pairs(options, finder, input, journal);
+      });
 }
 
 void offer(CLI::App& app, PathCommandOptions& o) {
   add_input(app, o.input);
   auto* from = add_parsed(
       app, "--from", o.from, [](const std::string& text) { return parse_source(text); }, "SPEC",
-      "Where the path starts, see below");
-  auto* to =
-      add_parsed(app, "--to", o.to, parse_sources, "POINTS", "Where it ends, or what it leads through in this order");
+      "Start of the path, see below");
+  auto* to = add_parsed(app, "--to", o.to, parse_sources, "POINTS",
+                        "End of the path, or several points that it passes in this order");
   auto* through =
-      add_parsed(app, "--through", o.through, parse_sources, "POINTS", "What it leads through before")->needs(to);
-  auto* pairs = add_parsed(app, "--pairs", o.pairs, read_pairs, "PAIRS", "A path for every line of a file instead");
+      add_parsed(app, "--through", o.through, parse_sources, "POINTS", "Points that the path passes before --to")
+          ->needs(to);
+  auto* pairs = add_parsed(app, "--pairs", o.pairs, read_pairs, "PAIRS",
+                           "File with one path per line, instead of --from and --to");
   add_table_output(app, o.output)->required();
-  auto* closed = app.add_flag("--closed", o.closed, "And back to where it starts")->excludes(pairs);
-  app.add_flag("--tighten", o.tighten, "The loop as short as it gets in its place, away from its points")
+  auto* closed = app.add_flag("--closed", o.closed, "Close the path: return to its start")->excludes(pairs);
+  app.add_flag("--tighten", o.tighten, "With --closed: shorten the loop to a closed geodesic, away from its points")
       ->needs(closed);
-  app.add_flag("--fast", o.fast, "Locally shortest paths, in time on meshes of any size");
+  app.add_flag("--fast", o.fast, "Locally shortest paths; fast on meshes of any size");
   for (auto* option : {from, to, through}) option->excludes(pairs);
   app.callback([=] {
     if (pairs->count() == 0 && (from->count() == 0 || to->count() == 0))
-      throw CLI::ValidationError("--from", "give --from and --to, or --pairs");
+      throw CLI::ValidationError("--from", "use --from and --to, or --pairs");
   });
   add_threads(app, o.input);
   add_cloud_options(app, o.input);
@@ -204,7 +208,7 @@ void offer(CLI::App& app, PathCommandOptions& o) {
 }  // namespace
 
 Subcommand add_path(CLI::App& program) {
-  return subcommand<PathCommandOptions>(program, "path", "Shortest paths over a surface", path_footer, offer, run);
+  return subcommand<PathCommandOptions>(program, "path", "Shortest paths on a surface", path_footer, offer, run);
 }
 
 }  // namespace ahm::app

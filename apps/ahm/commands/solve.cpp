@@ -40,19 +40,19 @@ std::vector<std::string> words(const InputOptions& o) {
 
 namespace {
 
-/// Better refused than swapped for.
+/// Throws if the factors do not fit the memory, instead of letting the machine swap. @throws ResourceExhausted
 void check_memory_of_factors(const SolveOptions& options, const TangentGraph& graph) {
   if (options.strategy != Strategy::global) return;
   const GraphSize size{graph.size(), graph.dimension(), graph.transport_kind()};
   const double wanted = estimate_cost(size, Strategy::global).bytes, memory = machine_memory();
   if (memory > 0 && wanted > memory)
     throw ResourceExhausted(fmt::format(
-        "--strategy global: the factors would take about {}, this machine has {}; leave the choice to auto, which "
-        "marches",
+        "--strategy global: the factors require about {}, this machine has {}; use --strategy auto, which chooses the "
+        "march",
         bytes_as_text(static_cast<std::int64_t>(wanted)), bytes_as_text(static_cast<std::int64_t>(memory))));
 }
 
-/// The look takes a tenth of a map's time, and is spared where there is plenty.
+/// Checks the memory of a march. The exact estimate takes a tenth of the time of a map, so it is skipped where memory is plentiful.
 void check_memory_of_march(const SolveOptions& options, const TangentGraph& graph, const Source& source,
                            Journal& journal) {
   constexpr double worth_a_look = 0.4;
@@ -70,7 +70,7 @@ void check_memory_of_march(const SolveOptions& options, const TangentGraph& grap
 std::string strategy_as_text(const LogMap& map) {
   const MarchStatistics& m = map.march();
   if (map.strategy() == Strategy::global) return "global";
-  return fmt::format("march: {}, the largest of {} vertices", counted(m.bands, "band"), m.largest_band);
+  return fmt::format("march: {}, vertices of the largest band: {}", counted(m.bands, "band"), m.largest_band);
 }
 
 }  // namespace
@@ -129,7 +129,7 @@ LogMap Maps::map(const SolveOptions& options, const Input& input, const SourceSp
                  Journal& journal) const {
   if (solver) return solve(options, *solver, source.source, journal);
   journal.start("solve");
-  // From the point and along the axis of the source that was found for the user.
+  // The other methods use the same point and u axis as the source.
   const auto u_axis = source.frame ? std::optional(source.frame->x) : std::nullopt;
   if (geodesics) return geodesics->log_map(point_of(input, spec), u_axis, exact_options(options, journal));
   const MapOptions map = map_options(options);

@@ -1,5 +1,5 @@
 /// \file
-/// The options that an input was opened with, as they stand in a command line.
+/// Solvers and maps of a subcommand, from its options.
 #pragma once
 
 #include <optional>
@@ -13,28 +13,28 @@
 
 namespace ahm::app {
 
-/// Without the path; those that are not as usual.
+/// The input options that differ from the defaults, as command-line arguments, without the path.
 std::vector<std::string> words(const InputOptions& options);
 
-/// The solver of the options, which also sets variant and threads of all maps.
-/// @param maps  how many are expected; 0: many
-/// @throws ResourceExhausted where a global solve would swap
+/// A solver with the options, which also set the variant and threads of all maps.
+/// @param maps  expected number of maps; 0: many
+/// @throws ResourceExhausted (the factors of a global solve do not fit the memory)
 LogMapSolver make_solver(const SolveOptions& options, const TangentGraph& graph, Journal& journal, int maps = 1);
 
-/// What the options say of single maps: the radius. With frames, for directions in space.
+/// Options of single maps: the radius. Maps keep their frames, which directions in space require.
 MapOptions map_options(const SolveOptions& options);
 
-/// What they say of exact maps: the radius, too.
+/// Options of exact maps: the radius and the tolerance.
 ExactMapOptions exact_options(const SolveOptions& options, Journal& journal);
 
-/// One map; the journal tells the strategy.
+/// Computes one map, and reports its strategy with --verbose.
 LogMap solve(const SolveOptions& options, const LogMapSolver& solver, const Source& source, Journal& journal);
 
-/// What makes the maps of a subcommand that needs several, by the method of the options.
+/// The solver of the method in the options, for a subcommand with several maps.
 struct Maps {
-  /// @param count  maps that are expected; 0: many. @throws as `make_solver`, `ExactGeodesics`
+  /// @param count  expected number of maps; 0: many. @throws as `make_solver`, `ExactGeodesics`
   Maps(const SolveOptions& options, const Input& input, Journal& journal, int count);
-  /// One of them. @param source  of `spec`. @throws as `solve`
+  /// Computes one map. @param source  the source of `spec`. @throws as `solve`
   LogMap map(const SolveOptions& options, const Input& input, const SourceSpec& spec, const SurfaceSource& source,
              Journal& journal) const;
   AnySolver maker() const {
@@ -47,9 +47,9 @@ struct Maps {
   ExactMapOptions exact;
 };
 
-/// The one map of a subcommand, by the method of the options.
-/// @param source  of `spec`
-/// @throws InvalidArgument where the method needs faces that the input does not have, and as `make_solver`
+/// Computes the single map of a subcommand by the method in the options.
+/// @param source  the source of `spec`
+/// @throws InvalidArgument (the method requires faces, and the input has none), and as `make_solver`
 LogMap solve(const SolveOptions& options, const Input& input, const SourceSpec& spec, const SurfaceSource& source,
              Journal& journal);
 

@@ -21,25 +21,24 @@ namespace ahm::app {
 namespace {
 
 constexpr const char* stroke_footer =
-    "CURVE is a list between blanks, or a file with one entry per line, of\n"
+    "CURVE is a list separated by blanks, or a file with one entry per line. An entry is one of\n"
     "  123              a vertex of INPUT, counted from 0\n"
     "  1.5,0,-2         the nearest point of the surface; in files also 1.5 0 -2\n"
-    "  face:7:.2,.3,.5  a point in face 7, by barycentric coordinates, one per corner (meshes)\n"
-    "They are joined by shortest paths, over the faces of meshes and the tangent planes of clouds, and cut into "
-    "pieces\n"
-    "of half an edge.\n"
+    "  face:7:.2,.3,.5  a point in face 7 in barycentric coordinates, one per corner (meshes)\n"
+    "Shortest paths join the points, over the faces of meshes or the tangent planes of clouds. The curve is cut into\n"
+    "pieces of half an edge.\n"
     "\n"
-    "OUTPUT  .csv, .jsonl, .ply, .pcd or .vtp; one row per vertex of INPUT, in its order:\n"
+    "OUTPUT  .csv, .jsonl, .ply, .pcd or .vtp; one row per vertex of INPUT, in the same order:\n"
     "          index,x,y,z,u,v,distance,status,quality,spread\n"
-    "          u  arclength along the curve, before and after its ends straight on\n"
-    "          v  distance from it, positive on its left as seen from outside (the side of the normals)\n"
-    "        With --circle the curve becomes a circle of its length about the origin; with --positions its points get\n"
-    "        these coordinates, a list 'u,v u,v ...' or a file with one pair per line, and u,v go on from there.\n"
-    "          distance  from the curve, along the surface\n"
-    "          quality   in (0, 1]; below 0.5 do not trust u,v: several parts of the curve are as near, or the surface "
-    "is\n"
-    "                    too coarse for its bends\n"
-    "          spread    standard deviation of (u, v) over the ways by which heat came\n"
+    "          u         arclength along the curve; beyond its ends along straight extensions\n"
+    "          v         signed distance from the curve, positive on its left as seen from the side of the normals\n"
+    "          distance  distance from the curve along the surface\n"
+    "          quality   reliability of u,v in (0, 1]; do not use u,v below 0.5: several parts of the curve are\n"
+    "                    equally near, or the mesh is too coarse for its bends\n"
+    "          spread    uncertainty of u,v as a length: the standard deviation over the paths of the heat\n"
+    "        With --circle the map takes the curve to a circle of the same length about the origin.\n"
+    "        With --positions it takes the points of the curve to POINTS, a list 'u,v u,v ...' or a file with one\n"
+    "        pair per line.\n"
     "\n"
     "Examples:\n"
     "  ahm stroke scan.ply --curve '0,0,1.2 0.3,0,1.1 0.5,0.2,1' -o stroke.csv --view stroke.png\n"
@@ -51,7 +50,7 @@ struct StrokeCommandOptions {
   OutputOptions output;
   std::vector<SourceSpec> curve;
   StrokeOptions shape;
-  std::vector<std::array<double, 2>> positions;  ///< of the points of the curve; empty: by arclength
+  std::vector<std::array<double, 2>> positions;  ///< (u, v) of each point of the curve; empty: by arclength
 };
 
 CurvePoint curve_point(const Input& input, const SourceSpec& spec) {
@@ -86,17 +85,17 @@ LogMap solve(const SolveOptions& options, const Input& input, const SurfaceCurve
 void comment_on_curve(const SurfaceCurve& curve, double edge, Journal& journal) {
   if (curve.straight > 0)
     journal.add_warning(fmt::format(
-        "--curve: {} of the lines between its points {} straight in space and moved to the surface, no shortest path "
-        "along it: {}",
+        "--curve: {} of the lines between its points {} straight in space and projected to the surface instead of a "
+        "shortest path: {}",
         curve.straight, curve.straight == 1 ? "is" : "are", curve.straight_reason));
   if (curve.gap > 2 * edge)
     journal.add_warning(fmt::format(
-        "--curve: the straight lines between its points leave the surface by up to {:.4g}, {:.0f} mean edge lengths; "
-        "give more points",
+        "--curve: the straight lines between its points are up to {:.4g} ({:.0f} mean edge lengths) off the surface; "
+        "add points",
         curve.gap, curve.gap / edge));
   if (curve.jump > 3 * edge)
     journal.add_warning(fmt::format(
-        "--curve: jumps by up to {:.4g} along the surface, {:.0f} mean edge lengths; give more points, nearer to it",
+        "--curve: jumps by up to {:.4g} ({:.0f} mean edge lengths) along the surface; add points, close to the surface",
         curve.jump, curve.jump / edge));
 }
 
@@ -141,9 +140,8 @@ void report(const StrokeCommandOptions& options, const Input& input, const Surfa
   j["largest_distance"] = farthest;
   j["untrusted"] = untrusted(quality);
   const std::string text = fmt::format(
-      "{} curve of {}, {:.6g} long, off the surface by {:.2g} at most\n{} of {} vertices mapped, up to {:.6g} "
-      "from "
-      "the curve\n{}\n",
+      "{} curve of {}, length {:.6g}, at most {:.2g} off the surface\n"
+      "vertices mapped: {} of {}, up to {:.6g} from the curve\n{}\n",
       options.shape.closed ? "closed" : "open", counted(curve.samples.size(), "piece"), curve.length, curve.gap, mapped,
       rows.status.size(), farthest, quality_as_text(quality));
   deliver(std::move(j), text, options.output, journal);
@@ -163,7 +161,7 @@ void run(const StrokeCommandOptions& options) {
   const RowLogMap rows = rows_from_curve(input.surface(), map, curve, radius);
   comment_on_statuses(rows.status, options.input.path, journal);
   const std::vector<double> quality = to_rows(rows, map_quality(input.graph(), map, options.solve.threads));
-  comment_on_quality(quality, "keep to what is near with --radius", journal);
+  comment_on_quality(quality, "limit the map with --radius", journal);
   Results results(options.output, input, options.input);
   write_results(curve, options.shape, rows, quality, results, journal);
   report(options, input, curve, rows, quality, journal);
@@ -171,22 +169,23 @@ void run(const StrokeCommandOptions& options) {
 
 void offer(CLI::App& app, StrokeCommandOptions& o) {
   add_input(app, o.input);
-  add_parsed(app, "--curve", o.curve, parse_sources, "CURVE", "List or file of points, see below")->required();
+  add_parsed(app, "--curve", o.curve, parse_sources, "CURVE", "Points of the curve: list or file, see below")
+      ->required();
   add_table_output(app, o.output)->required();
-  app.add_flag("--closed", o.shape.closed, "Join the last point to the first");
+  app.add_flag("--closed", o.shape.closed, "Close the curve: join the last point to the first");
   auto* circle = app.add_flag_callback(
       "--circle", [&o] { o.shape.closed = true, o.shape.shape = StrokeShape::circle; },
-      "Closed; map the curve to a circle instead of a line");
+      "Close the curve, and map it to a circle instead of a line");
   add_parsed(app, "--positions", o.positions, parse_plane_points, "POINTS",
-             "Map the points of CURVE to these instead, one u,v for each, see below")
+             "Coordinates u,v of the points of CURVE, one pair per point, see below")
       ->excludes(circle);
   app.callback([&o] {
     if (!o.positions.empty() && o.positions.size() != o.curve.size())
-      throw CLI::ValidationError("--positions",
-                                 fmt::format("{} for the {} points of --curve", o.positions.size(), o.curve.size()));
+      throw CLI::ValidationError("--positions", fmt::format("expected one pair per point of --curve, found {} for {}",
+                                                            o.positions.size(), o.curve.size()));
   });
   add_parsed(app, "--radius", o.solve.radius, parse_positive, "R",
-             "Leave out everything farther than this from the curve; what lies beyond costs nothing");
+             "Map only points within this distance of the curve; smaller is faster");
   add_method(app, o.solve, {Method::exact});
   add_tolerance(app, o.solve);
   add_graph_options(app, o.input, o.solve);
@@ -196,7 +195,7 @@ void offer(CLI::App& app, StrokeCommandOptions& o) {
 }  // namespace
 
 Subcommand add_stroke(CLI::App& program) {
-  return subcommand<StrokeCommandOptions>(program, "stroke", "Coordinates along a curve on a surface and across it",
+  return subcommand<StrokeCommandOptions>(program, "stroke", "Coordinates along and across a curve on a surface",
                                           stroke_footer, offer, run);
 }
 

@@ -1,6 +1,6 @@
 /// \file
-/// What a subcommand is. Each has a file of its own, commands/NAME.cpp, with a function `add_NAME`; the list of all is in
-/// apps/ahm/CMakeLists.txt.
+/// The interface of subcommands. Each subcommand is a file commands/NAME.cpp with a function `add_NAME`; apps/ahm/CMakeLists.txt lists
+/// them.
 #pragma once
 
 #include <CLI/App.hpp>
@@ -12,14 +12,15 @@
 
 namespace ahm::app {
 
-/// A part of the command line and what it asks for.
+/// A subcommand: its options and its work.
 struct Subcommand {
-  CLI::App* app;              ///< owned by the program's
-  std::function<void()> run;  ///< once the command line is read; throws ahm::Error and its kin, the caller reports them
+  CLI::App* app;              ///< owned by the program's CLI::App
+  std::function<void()> run;  ///< does the work after the command line was read; the caller reports what it throws
 };
 
+/// Makes a subcommand.
 /// @param offer  adds the options of the subcommand to the command line
-/// @param run    does the work, once they are read. Its files get their names when `deliver` tells of them, else at its end
+/// @param run    does the work. Its output files appear under their names when `deliver` reports them, otherwise at the end
 template <class Options>
 Subcommand subcommand(CLI::App& program, const char* name, const char* purpose, const char* footer,
                       void (*offer)(CLI::App&, Options&), void (*run)(const Options&)) {
@@ -37,7 +38,7 @@ Subcommand subcommand(CLI::App& program, const char* name, const char* purpose, 
 /// Adds a subcommand to the program's command line.
 using AddSubcommand = Subcommand (*)(CLI::App& program);
 
-/// All of them, in the order of 'ahm --help'.
+/// All subcommands, in the order of `ahm --help`.
 std::span<const AddSubcommand> subcommands();
 
 }  // namespace ahm::app

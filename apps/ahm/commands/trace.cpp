@@ -14,28 +14,26 @@ namespace {
 
 constexpr const char* trace_footer =
     "SPEC is 123, x,y,z (the nearest point of the surface) or face:7:.2,.3,.5 as in 'ahm path'.\n"
-    "The line goes straight through faces, and through vertices with equal angles on both sides; over a cloud from "
-    "the\n"
-    "tangent plane of a point to that of the next. It ends early at the boundary.\n"
-    "LINES is a file: SPEC X,Y,Z and, where it is not --length, L in every line.\n"
-    "OUTPUT is .csv, .ply, .obj ... as in 'ahm path'; of LINES with curve, the number of the line in the file, from "
-    "0.\n"
+    "The line runs straight through faces, and through vertices with equal angles on both sides. Over a cloud it runs\n"
+    "from tangent plane to tangent plane. It ends early at a boundary.\n"
+    "LINES is a file with one line per row: SPEC X,Y,Z, followed by its length L unless --length is set.\n"
+    "OUTPUT is .csv, .ply, .obj, ... as in 'ahm path'. With LINES it also has curve, the number of the line, from 0.\n"
     "\n"
     "Example:\n"
     "  ahm trace mesh.ply --source 17 --direction 1,0,0 --length 0.5 -o line.csv --view line.png";
 
-/// A line as the user wants it.
+/// A line to trace.
 struct WantedLine {
   std::optional<SourceSpec> source;
   Vec3 direction{};
-  double length = 0;  ///< 0: not given
+  double length = 0;  ///< 0: that of --length
 };
 
 struct TraceCommandOptions {
   InputOptions input;
   OutputOptions output;
   WantedLine line;
-  std::vector<WantedLine> lines;  ///< instead
+  std::vector<WantedLine> lines;  ///< lines of --lines, instead of `line`
 };
 
 WantedLine parse_line(const std::string& text) {
@@ -43,12 +41,12 @@ WantedLine parse_line(const std::string& text) {
   std::vector<std::string> words;
   for (std::string word; stream >> word;) words.push_back(word);
   if (words.size() != 2 && words.size() != 3)
-    throw std::invalid_argument(fmt::format("'{}' is not of the form SPEC X,Y,Z or SPEC X,Y,Z L", text));
+    throw std::invalid_argument(fmt::format("expected SPEC X,Y,Z or SPEC X,Y,Z L, found '{}'", text));
   return {parse_source(words[0]), parse_direction(words[1]), words.size() == 3 ? parse_positive(words[2]) : 0.0};
 }
 
 std::vector<WantedLine> read_lines(const std::string& file) {
-  require_file(file, "SPEC X,Y,Z in every line");
+  require_file(file, "SPEC X,Y,Z in each row");
   std::vector<WantedLine> lines;
   for_each_line(file, file, "lines", [&](const std::string& line) { lines.push_back(parse_line(line)); });
   return lines;
@@ -82,7 +80,7 @@ Polylines find_lines(const TraceCommandOptions& options, const LineFinder& finde
     length += line.length;
     at_boundary += line.complete ? 0 : 1;
   }
-  result.text = fmt::format("{} of {}, {:.6g} long together; {} at the boundary\n",
+  result.text = fmt::format("{} of {}, total length {:.6g}; {} at the boundary\n",
                             counted(options.lines.size(), "line"), counted(result.points.size(), "point"), length,
                             at_boundary == 1 ? "1 ends" : fmt::format("{} end", at_boundary));
   return result;
@@ -98,8 +96,8 @@ Polylines find_line(const TraceCommandOptions& options, const LineFinder& finder
   result.json["end"] = {{"at", line.complete ? "length" : "boundary"}, {"position", points.back()}};
   result.json["points"] = points.size();
   result.json["length"] = line.length;
-  result.text = fmt::format("a line of {}, {:.6g} long{}\n", counted(points.size(), "point"), line.length,
-                            line.complete ? "" : ", where it meets the boundary");
+  result.text = fmt::format("a line of {}, length {:.6g}{}\n", counted(points.size(), "point"), line.length,
+                            line.complete ? "" : ", ends at the boundary");
   return result;
 }
 
@@ -119,20 +117,22 @@ void offer(CLI::App& app, TraceCommandOptions& o) {
   add_input(app, o.input);
   auto* source = add_parsed(
       app, "-s,--source", o.line.source, [](const std::string& text) { return parse_source(text); }, "SPEC",
-      "Where the line starts, see below");
+      "Start of the line, see below");
   auto* direction = add_parsed(
       app, "--direction", o.line.direction, parse_direction, "X,Y,Z",
-      "Where to, projected to the surface; not within a degree of the normal, 5 where normals are estimated");
-  auto* length = add_parsed(app, "--length", o.line.length, parse_positive, "L", "How far, along the surface");
-  auto* lines = add_parsed(app, "--lines", o.lines, read_lines, "LINES", "Many lines instead, see below");
+      "Direction in space, projected to the surface; at least 1 degree from the normal, 5 if normals are estimated");
+  auto* length =
+      add_parsed(app, "--length", o.line.length, parse_positive, "L", "Length of the line, along the surface");
+  auto* lines = add_parsed(app, "--lines", o.lines, read_lines, "LINES",
+                           "File with many lines, instead of --source and --direction; see below");
   source->excludes(lines);
   direction->excludes(lines);
   app.callback([=, &o] {
     if (lines->count() == 0 && (source->count() == 0 || direction->count() == 0 || length->count() == 0))
-      throw CLI::ValidationError("--source", "give --source, --direction and --length, or --lines");
+      throw CLI::ValidationError("--source", "use --source, --direction and --length, or --lines");
     for (const WantedLine& line : o.lines)
       if (line.length == 0 && length->count() == 0)
-        throw CLI::ValidationError("--lines", "some lines have no length; give --length");
+        throw CLI::ValidationError("--lines", "some lines have no length; add it to the file, or use --length");
   });
   add_table_output(app, o.output)->required();
   add_threads(app, o.input);
@@ -144,7 +144,8 @@ void offer(CLI::App& app, TraceCommandOptions& o) {
 }  // namespace
 
 Subcommand add_trace(CLI::App& program) {
-  return subcommand<TraceCommandOptions>(program, "trace", "Straight lines over a surface", trace_footer, offer, run);
+  return subcommand<TraceCommandOptions>(program, "trace", "Straight lines (geodesics) on a surface", trace_footer,
+                                         offer, run);
 }
 
 }  // namespace ahm::app

@@ -21,9 +21,9 @@ namespace ahm::app {
 namespace {
 
 constexpr const char* view_footer =
-    "Opens a page in the browser, served by this program, on this machine and to nobody else, until Ctrl-C. Click a\n"
-    "point: the map from there. Its values are told under the pointer; paths, strokes, decals, tool paths, the file\n"
-    "and the command line that gives the same are a click away.\n"
+    "Opens a page in the browser and serves it, to this machine only, until Ctrl-C. Click a point of the surface to\n"
+    "see the map from there; the page shows its values under the pointer. The page also draws paths, strokes, decals\n"
+    "and tool paths, saves files, and shows the command line that gives the same result.\n"
     "\n"
     "Examples:\n"
     "  ahm view scan.ply\n"
@@ -40,7 +40,7 @@ struct ViewOptions {
   Verbosity verbosity = Verbosity::normal;
 };
 
-/// Where a map of the whole surface would take long: what the first maps reach.
+/// Radius of the first maps, where a map of the whole surface would take long. None: no limit.
 std::optional<double> first_radius(const ViewOptions& options, const TangentGraph& graph) {
   constexpr Index large = 500'000;
   constexpr double edges = 64;  // about 20,000 vertices
@@ -91,7 +91,7 @@ viewer::SessionOptions session_options(const ViewOptions& options, const Input& 
     }
     const Decal made = make_decal(inverse, decal);
     if (made.face_begin.size() < 2)
-      throw InvalidArgument("no part of the image lies on a trusted part of the surface; choose another source");
+      throw InvalidArgument("the image covers no part of the surface where the map is reliable; choose another source");
     io::write_textured(file, DecalMesh(all_faces(input), made, image).parts());
   };
   return session;
@@ -101,10 +101,10 @@ void run(const ViewOptions& options) {
   if (!viewer::can_serve())
     throw Error(
         "this build of ahm has no viewer; install cpp-httplib and three.js (Debian: libcpp-httplib-dev libjs-three "
-        "pkgconf) and build again. 'ahm logmap --view map.html' or .png needs less");
+        "pkgconf) and build again, or use 'ahm logmap --view map.html' or map.png");
   Journal journal(options.verbosity);
   const Input input = open_input(options.input, journal, options.source);
-  if (options.source) place(input, *options.source);  // checks
+  if (options.source) place(input, *options.source);  // checks the source
   journal.start("page");
   const std::vector<Vec3> normals = input.surface().normals();
   const viewer::Session session(input.surface(), input.geometry, session_options(options, input, normals));
@@ -113,11 +113,11 @@ void run(const ViewOptions& options) {
   journal.clear_display();
   const bool opened = !options.no_browser && open_browser(server.address());
   print(fmt::format("{}\n", server.address()));
-  say(opened ? "ahm: opened in the browser; Ctrl-C ends it\n"
-             : "ahm: open this address in a browser; Ctrl-C ends it\n");
+  say(opened ? "ahm: opened in the browser; Ctrl-C ends the program\n"
+             : "ahm: open this address in a browser; Ctrl-C ends the program\n");
   if (const auto radius = first_radius(options, input.graph()); radius && !options.solve.radius)
-    say(fmt::format(
-        "ahm: maps reach {:g} around the source, as 'radius' on the page says; clear it to map everything\n", *radius));
+    say(fmt::format("ahm: maps have the radius {:g}, set by 'radius' on the page; clear that field to map everything\n",
+                    *radius));
   server.run();
 }
 
@@ -125,16 +125,16 @@ void offer(CLI::App& app, ViewOptions& o) {
   add_input(app, o.input);
   add_parsed(
       app, "-s,--source", o.source, [](const std::string& text) { return parse_source(text); }, "SPEC",
-      "Where the first map starts (default: in the middle of the picture)");
-  app.add_flag("--no-browser", o.no_browser, "Print the address only");
-  add_parsed(app, "--port", o.port, integer_parser(0, 65535), "N", "Of 127.0.0.1 (default 0: any that is free)");
+      "Source of the first map (default: in the middle of the picture)");
+  app.add_flag("--no-browser", o.no_browser, "Only print the address, do not open a browser");
+  add_parsed(app, "--port", o.port, integer_parser(0, 65535), "N", "Port on 127.0.0.1 (default 0: any free port)");
   add_method(app, o.solve, {Method::polar, Method::exact}, true);
   add_tolerance(app, o.solve);
   add_parsed(app, "--radius", o.solve.radius, parse_positive, "R",
-             "Leave out everything farther than this from the source");
+             "Map only points within this distance of the source");
   app.add_flag("--local", o.local,
-               "Begin with maps of the surroundings of the source, 64 edges around it, where no --radius is\n"
-               "given; always with more than 500,000 vertices, where the first map of all would take long");
+               "Start with maps of radius 64 edges around the source, unless --radius is set. This is the default\n"
+               "for more than 500,000 vertices, where a map of the whole surface takes long");
   add_graph_options(app, o.input, o.solve);
   add_verbosity(app, o.verbosity);
 }
@@ -142,7 +142,7 @@ void offer(CLI::App& app, ViewOptions& o) {
 }  // namespace
 
 Subcommand add_view(CLI::App& program) {
-  return subcommand<ViewOptions>(program, "view", "The map under the pointer, in the browser", view_footer, offer, run);
+  return subcommand<ViewOptions>(program, "view", "Interactive maps in the browser", view_footer, offer, run);
 }
 
 }  // namespace ahm::app

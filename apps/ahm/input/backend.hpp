@@ -1,6 +1,6 @@
 /// \file
-/// What the program needs of a backend. Each has a file of its own, input/NAME_backend.cpp, with a function
-/// `NAME_backend`; the list of all is in apps/ahm/CMakeLists.txt.
+/// The program's interface of a backend. Each backend is a file input/NAME_backend.cpp with a function `NAME_backend`;
+/// apps/ahm/CMakeLists.txt lists them.
 #pragma once
 
 #include <memory>
@@ -18,7 +18,7 @@
 
 namespace ahm::app {
 
-/// A surface, and what was found and done on the way to it, in the program as in the library.
+/// A surface, and the report and warnings of its construction, by the program and the library.
 struct Built {
   std::unique_ptr<const Surface> surface;
   Report report;
@@ -28,25 +28,25 @@ struct Built {
       : surface(std::move(built)), report(surface->report()), warnings(surface->warnings()) {}
 };
 
-/// A way to make a surface of an input.
+/// Builds surfaces from inputs.
 struct Backend {
   std::string_view name;
-  bool (*suits)(const io::Geometry&);  ///< `auto` takes the first that does
+  bool (*suits)(const io::Geometry&);  ///< whether the backend suits an input; `auto` uses the first that does
   BuildCost cost;
-  /// @param source  that the surface is opened for, if there is one: filters of clouds keep it
+  /// @param source  source of the single map, if there is one: filters of clouds keep its point
   /// @throws what the backend throws
   Built (*build)(const io::Geometry& input, const InputOptions& options, const std::optional<SourceSpec>& source,
                  const Progress& progress);
-  /// How many vertices of its own the graph will have beside those of the input; null: none.
+  /// Number of vertices that the graph will have in addition to those of the input; null: none.
   std::size_t (*more_vertices)(const io::Geometry& input, const InputOptions& options) = nullptr;
-  bool uses_faces = true;  ///< or points alone
+  bool uses_faces = true;  ///< false: only the points
 };
 
-/// All of them, in the order in which `auto` asks them.
+/// All backends, in the order in which `auto` tries them.
 std::span<const Backend> backends();
 
-/// The user's choice, or for `auto` the backend that suits the input; of triangles, too, the one for polygons where they are to be
-/// solved as polygons.
+/// The backend that the user chose, or for `auto` the first that suits the input. With --discretization polygons `auto` uses the
+/// backend of polygon meshes for triangles, too.
 const Backend& choose_backend(const io::Geometry& input, const InputOptions& options);
 
 }  // namespace ahm::app

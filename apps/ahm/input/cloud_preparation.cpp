@@ -28,20 +28,20 @@ PreparedCloud finite_points(const io::Geometry& input, const InputOptions& optio
   for (std::size_t i = 0; i < input.points.size(); ++i)
     (is_finite(input.points[i]) ? cloud.rows : bad).push_back(static_cast<Index>(i));
   if (!bad.empty() && !options.drop_nan)
-    throw InvalidGeometry(fmt::format(
-        "{}: {} of {} points have a coordinate that is nan or infinite (points {}); --drop-nan leaves them out",
-        options.path, bad.size(), input.points.size(), list_first(bad)));
+    throw InvalidGeometry(
+        fmt::format("{}: points with NaN or infinite coordinates: {} of {} (points {}); drop them with --drop-nan",
+                    options.path, bad.size(), input.points.size(), list_first(bad)));
   cloud.non_finite = static_cast<Index>(bad.size());
   return cloud;
 }
 
 void require_normals(const io::Geometry& input, const InputOptions& options) {
   if (input.normals.empty() && (options.normals == "oriented" || options.normals == "unoriented"))
-    throw InvalidArgument(fmt::format("--normals {}: {} has no normals; leave the option out to estimate them",
+    throw InvalidArgument(fmt::format("--normals {}: {} has no normals; leave this option out to estimate them",
                                       options.normals, options.path));
 }
 
-/// Keeps what lies within one and a half radii of the source, or of the point nearest to it.
+/// Keeps the points within 1.5 radii of the source, or of the point nearest to it if the source is a position.
 void keep_surroundings(PreparedCloud& cloud, const io::Geometry& input, double radius, const SourceSpec& source) {
   Vec3 center = position_in(input, source, "--source");
   if (std::holds_alternative<SourcePosition>(source) && !cloud.rows.empty())
@@ -53,14 +53,15 @@ void keep_surroundings(PreparedCloud& cloud, const io::Geometry& input, double r
   cloud.rows.clear();
   for (const Row row : near) cloud.rows.push_back(row.index);
   if (near.size() < 3)
-    throw InvalidArgument(fmt::format(
-        "--local: only {} within {:.6g} of the source {}, a surface takes 3; reach farther, or leave it out",
-        near.size() == 1 ? "1 point lies" : fmt::format("{} points lie", near.size()), 1.5 * radius,
-        to_string(source)));
+    throw InvalidArgument(
+        fmt::format("--local: only {} within {:.6g} of the source {}, and a surface requires 3; use a larger radius, "
+                    "or leave it out",
+                    near.size() == 1 ? "1 point lies" : fmt::format("{} points lie", near.size()), 1.5 * radius,
+                    to_string(source)));
 }
 
 #ifdef AHM_WITH_PCL
-/// Of all rows, those that are listed.
+/// The vectors at the listed rows.
 std::vector<Vec3> taken(const std::vector<Vec3>& all, const std::vector<Index>& rows) {
   std::vector<Vec3> result;
   for (Index row : rows) result.push_back(all[row]);
@@ -72,8 +73,8 @@ std::optional<Index> row_of(const SourceSpec& spec) {
   return vertex ? std::optional(vertex->index) : std::nullopt;
 }
 
-/// Of every voxel the points that are named, or where none is the one that represents it. Ascending.
-/// @param rows  of the points, ascending
+/// The points to keep, ascending: in each voxel the points named in the command, or if there are none its representative.
+/// @param rows  row of each point, ascending
 std::vector<Index> representatives(const pcl_bridge::ReducedCloud& reduced, const std::vector<Index>& rows,
                                    const std::vector<SourceSpec>& named) {
   std::vector<Index> kept;
@@ -81,7 +82,7 @@ std::vector<Index> representatives(const pcl_bridge::ReducedCloud& reduced, cons
   for (const SourceSpec& spec : named) {
     const std::optional<Index> row = row_of(spec);
     const auto place = row ? std::lower_bound(rows.begin(), rows.end(), *row) : rows.end();
-    if (place == rows.end() || *place != *row) continue;  // refused where it is used
+    if (place == rows.end() || *place != *row) continue;  // reported where the row is used
     kept.push_back(static_cast<Index>(place - rows.begin()));
     has_named[reduced.row_of_point[kept.back()]] = true;
   }
@@ -112,8 +113,8 @@ void apply_outlier_removal(PreparedCloud& cloud, const io::Geometry& input, std:
   for (Index& point : kept) point = cloud.rows[point];
   cloud.rows = std::move(kept);
   if (source && !std::binary_search(cloud.rows.begin(), cloud.rows.end(), *source))
-    throw InvalidArgument(
-        fmt::format("--source {}: --outliers removes this point; choose another one or leave --outliers out", *source));
+    throw InvalidArgument(fmt::format(
+        "--source {}: --outliers removes this point; choose another source, or leave --outliers out", *source));
 }
 #endif
 
@@ -123,7 +124,8 @@ PreparedCloud prepare_cloud(const io::Geometry& input, const InputOptions& optio
                             const std::optional<SourceSpec>& source) {
   const auto begin = std::chrono::steady_clock::now();
 #ifndef AHM_WITH_PCL
-  if (options.voxel || options.outliers) throw InvalidArgument("--voxel and --outliers: this build of ahm has no PCL");
+  if (options.voxel || options.outliers)
+    throw InvalidArgument("--voxel and --outliers require PCL, which this build of ahm does not have");
 #endif
   PreparedCloud cloud = finite_points(input, options);
   require_normals(input, options);

@@ -1,5 +1,5 @@
 /// \file
-/// What happens to a cloud before its graph is built: non-finite points, voxel grid, outliers, normals.
+/// Filters a cloud before its graph is built: non-finite points, surroundings of the source, voxel grid, outliers.
 #pragma once
 
 #include <optional>
@@ -11,20 +11,21 @@
 
 namespace ahm::app {
 
-/// The points that remain.
+/// The points that remain, and how many were removed.
 struct PreparedCloud {
-  std::vector<Index> rows;   ///< of the input, ascending
-  Index non_finite = 0;      ///< input points dropped
-  Index voxel_replaced = 0;  ///< points represented by another one of their voxel
+  std::vector<Index> rows;   ///< rows of the input that remain, ascending
+  Index non_finite = 0;      ///< points dropped because they are not finite
+  Index voxel_replaced = 0;  ///< points replaced by another point of their voxel
   Index outliers = 0;        ///< points removed as outliers
   Index beyond = 0;          ///< points left out by --local
   double seconds = 0;
 };
 
-/// Applies the options that concern the input cloud, in the order non-finite, surroundings, voxel grid, outliers.
-/// Rows that the command names (`options.named`, `source`) represent their voxels.
-/// @param source  where the map starts: a row is no outlier, or the call is refused
-/// @throws InvalidGeometry (non-finite points without --drop-nan; unusable normals), InvalidArgument
+/// Applies the filters of the options in the order non-finite points, surroundings, voxel grid, outliers. The voxel grid keeps the
+/// rows named in the command (`options.named`, `source`).
+/// @param source  source of the single map, if there is one
+/// @throws InvalidGeometry (non-finite points without --drop-nan), InvalidArgument (no normals; too few points around the source; the
+/// source is an outlier; no PCL)
 PreparedCloud prepare_cloud(const io::Geometry& input, const InputOptions& options,
                             const std::optional<SourceSpec>& source);
 

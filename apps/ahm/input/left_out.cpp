@@ -9,7 +9,7 @@
 namespace ahm::app {
 namespace {
 
-/// The part of the whole mesh that the source lies in: of the faces left, that with the most of the source's vertices.
+/// The part of the whole mesh that contains the source: the part of the kept face with the most vertices of the source.
 Index part_of(const Input& input, const SurfaceSource& source) {
   std::vector<Index> rows;
   for (const Vertex v : source.source.vertices())

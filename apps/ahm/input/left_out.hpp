@@ -1,5 +1,5 @@
 /// \file
-/// What --local left out, in the results of all of the input.
+/// Statuses of the rows that --local left out.
 #pragma once
 
 #include "ahm/surface/row_log_map.hpp"
@@ -7,8 +7,8 @@
 
 namespace ahm::app {
 
-/// Statuses of rows that the surface lacks, or that hang together with the source by what it lacks alone: of meshes as without
-/// --local, of clouds `beyond_radius` where they are farther than that in a straight line.
+/// Corrects the statuses of rows that --local left out, or that only left-out faces connect to the source. Meshes get the same
+/// statuses as without --local. Points of clouds get `beyond_radius` if their straight-line distance is larger than the radius.
 void settle_left_out(const Input& input, const SurfaceSource& source, double radius, RowLogMap& rows);
 
 }  // namespace ahm::app

@@ -21,14 +21,13 @@ namespace ahm::app {
 void check_mesh_input(const std::string& backend, const io::Geometry& input, const InputOptions& options,
                       const std::optional<SourceSpec>& source) {
   if (input.face_count() == 0)
-    throw InvalidArgument(
-        fmt::format("--backend {}: the input has no faces; --backend pointcloud maps its points", backend));
+    throw InvalidArgument(fmt::format("--backend {}: the input has no faces; use --backend pointcloud", backend));
   const InputOptions defaults;
   if (options.voxel || options.outliers || options.drop_nan || options.k || options.knn != defaults.knn ||
       options.normals != defaults.normals || options.smooth)
     throw InvalidArgument(
-        "--voxel, --outliers, --drop-nan, --k, --knn, --normals and --smooth are for point clouds; add --backend "
-        "pointcloud to map the vertices as one");
+        "--voxel, --outliers, --drop-nan, --k, --knn, --normals and --smooth require a point cloud; leave them out, or "
+        "map the vertices as a cloud with --backend pointcloud");
   if (source) position_in(input, *source, "--source");
 }
 
@@ -36,17 +35,18 @@ void check_cloud_input(const io::Geometry& input, const InputOptions& options,
                        const std::optional<SourceSpec>& source) {
   if (options.repair.any())
     throw InvalidArgument(
-        "--repair, --weld, --drop-degenerate, --drop-duplicates and --orient are for meshes; a cloud joins equal "
-        "points by itself");
+        "--repair, --weld, --drop-degenerate, --drop-duplicates and --orient require a mesh; leave them out (equal "
+        "points of a cloud are always merged)");
   const InputOptions defaults;
   if (options.flips != defaults.flips || options.non_manifold != defaults.non_manifold ||
       options.discretization != defaults.discretization)
-    throw InvalidArgument("--no-flips, --non-manifold and --discretization are for meshes; the input is " +
-                          std::string(input.face_count() == 0 ? "a point cloud" : "mapped as a point cloud"));
+    throw InvalidArgument(
+        "--no-flips, --non-manifold and --discretization require a mesh; leave them out, because the input is " +
+        std::string(input.face_count() == 0 ? "a point cloud" : "mapped as a point cloud"));
   if (!source) return;
   if (const auto* face = std::get_if<SourceFace>(&*source))
-    throw InvalidArgument(fmt::format(
-        "--source {}: a cloud has no faces (backend pointcloud); write a vertex index or x,y,z", to_string(*face)));
+    throw InvalidArgument(
+        fmt::format("--source {}: a point cloud has no faces; write a vertex index or x,y,z", to_string(*face)));
   position_in(input, *source, "--source");
 }
 
@@ -55,11 +55,12 @@ void check_memory(const std::string& what, double bytes, Journal& journal) {
   const double memory = machine_memory();
   if (!(memory > 0 && bytes > memory)) return;
   const std::string told =
-      fmt::format("{} takes about {}, this machine lets it take {}", what,
+      fmt::format("{} requires about {} of memory, and {} are available", what,
                   bytes_as_text(static_cast<std::int64_t>(bytes)), bytes_as_text(static_cast<std::int64_t>(memory)));
   if (at_least * bytes > memory)
-    throw ResourceExhausted(told + "; thin the input, map what is near (ahm logmap --local), or cut it (ahm-tiles)");
-  journal.add_warning(told + ": the system may end it");
+    throw ResourceExhausted(
+        told + "; thin the input, map only the surroundings of the source (ahm logmap --local), or use ahm-tiles");
+  journal.add_warning(told + "; the system may stop the program");
 }
 
 const Backend& choose_backend(const io::Geometry& input, const InputOptions& options) {
@@ -80,10 +81,10 @@ void comment_on_blas(Journal& journal) {
   if (!info.blas_optimized)
     journal.add_warning(
         "the BLAS is not optimized (" + info.blas +
-        "): factorizations of large surfaces are several times slower; on Debian install libopenblas0-pthread");
+        "), so factorizations of large surfaces are several times slower; on Debian install libopenblas0-pthread");
 }
 
-/// With the option that asked for it in the message.
+/// `in_remaining_faces`; the messages of errors name the option.
 SourceSpec in_remaining_faces(const SourceSpec& spec, const RepairedMesh& mesh, const std::string& option) try {
   return in_remaining_faces(spec, mesh);
 } catch (const InvalidArgument& e) {
@@ -96,12 +97,12 @@ Built build(const Backend& backend, const io::Geometry& geometry, const std::opt
               : backend.build(geometry, options, place, journal.progress());
 }
 
-/// In the faces that --local left.
+/// The source with its face renumbered for the faces that --local keeps.
 SourceSpec in_near_faces(const SourceSpec& spec, const std::vector<Index>& near) {
-  return in_kept_faces(spec, near, "the face is too far from the source; leave --local out");
+  return in_kept_faces(spec, near, "this face is too far from the source; leave --local out");
 }
 
-/// Vertices too far away are no unused ones.
+/// Reports vertices that are too far away as `beyond` instead of `unreferenced`.
 void count_beyond(std::int64_t beyond, Built& built) {
   std::int64_t unused = 0;
   for (Figure& figure : built.report)
@@ -112,7 +113,7 @@ void count_beyond(std::int64_t beyond, Built& built) {
   if (unused == 0) std::erase_if(built.warnings, [](const Warning& w) { return w.id == "unreferenced"; });
 }
 
-/// A surface of the faces around the source; the geometry keeps all of them.
+/// Builds the surface from the faces around the source. The geometry of the result has all faces.
 Input open_surroundings(io::Geometry geometry, const Backend& backend, std::optional<RepairedMesh> mesh,
                         std::size_t given_faces, const InputOptions& options, const SourceSpec& place,
                         Journal& journal) {
@@ -153,7 +154,7 @@ io::Geometry read_input(const InputOptions& options, Journal& journal) {
   journal.start("read");
   io::Geometry input = read_input(options);
   journal.add_warnings(input.warnings);
-  if (input.points.empty()) throw InvalidGeometry(options.path + ": holds no points");
+  if (input.points.empty()) throw InvalidGeometry(options.path + ": the file contains no points");
   return input;
 }
 
@@ -187,7 +188,7 @@ InputOptions around_source(const InputOptions& options, std::optional<double> ra
   InputOptions result = options;
   if (!options.around_source) return result;
   if (!radius || !std::isfinite(*radius)) throw InvalidArgument("--local needs --radius");
-  if (!(*radius > 0)) throw InvalidArgument("--local: there is nothing around the source to map; leave it out");
+  if (!(*radius > 0)) throw InvalidArgument("--local: the radius is 0, there is nothing to map; leave it out");
   result.local = radius;
   return result;
 }
@@ -220,7 +221,7 @@ SurfaceSource resolve(const SourceOptions& options, const Input& input, unsigned
   SurfaceSource source =
       place(input, options.spec, axis && !axis->curvature ? std::optional(axis->direction) : std::nullopt);
   if (!axis || !axis->curvature) return source;
-  // In a face: at the corner that has most of the source.
+  // For a source in a face: at the corner with the largest weight.
   const auto weights = source.source.weights();
   const auto most = std::max_element(weights.begin(), weights.end()) - weights.begin();
   Vec3 direction;
@@ -239,7 +240,8 @@ Vec3 position_of(const Input& input, const SourceSpec& spec, const std::string& 
 Vertex vertex_at(const Input& input, const SourceSpec& spec, const std::string& option) {
   position_of(input, spec, option);
   if (std::holds_alternative<SourceFace>(spec))
-    throw InvalidArgument(fmt::format("{} {}: must be a vertex; write its number or x,y,z", option, to_string(spec)));
+    throw InvalidArgument(fmt::format("{} {}: points in faces are not supported here; write a vertex index or x,y,z",
+                                      option, to_string(spec)));
   return place(input, spec, std::nullopt, option).source.vertices().front();
 }
 
@@ -260,10 +262,10 @@ void comment_on_positions(const Input& input, std::span<const SourceSpec> specs,
     if (std::holds_alternative<SourceFace>(spec)) {
       const Vec3 wanted = position_of(input, spec, option), found = place(input, spec, std::nullopt, option).position;
       if (const double off = distance(wanted, found); off > outside * edge)
-        journal.add_warning(
-            fmt::format("{} {}: lies outside of its face; the nearest point of the face counts, {:.4g} away, at {:.6g} "
-                        "{:.6g} {:.6g}",
-                        option, to_string(spec), off, found[0], found[1], found[2]));
+        journal.add_warning(fmt::format(
+            "{} {}: outside of its face; the nearest point of the face is used, {:.4g} away, at {:.6g} {:.6g} "
+            "{:.6g}",
+            option, to_string(spec), off, found[0], found[1], found[2]));
     }
     const auto* position = std::get_if<SourcePosition>(&spec);
     if (position == nullptr) continue;
@@ -274,10 +276,11 @@ void comment_on_positions(const Input& input, std::span<const SourceSpec> specs,
   if (farthest == nullptr) return;
   const bool may_be_rows =
       std::ranges::all_of(farthest->position, [](double x) { return x >= 0 && x == std::floor(x); });
-  journal.add_warning(fmt::format(
-      "{} {}: {:.4g} off the surface, {:.0f} mean edge lengths{}; what lies nearest to it counts{}", option,
-      to_string(*farthest), away, away / edge, count > 1 ? fmt::format(", and {} more so far off", count - 1) : "",
-      may_be_rows ? " (between numbers of rows write blanks)" : ""));
+  journal.add_warning(
+      fmt::format("{} {}: {:.4g} ({:.0f} mean edge lengths) off the surface{}; the nearest point is used{}", option,
+                  to_string(*farthest), away, away / edge,
+                  count > 1 ? fmt::format(", other positions that are too far: {}", count - 1) : "",
+                  may_be_rows ? "; if these are rows, separate them by blanks" : ""));
 }
 
 }  // namespace ahm::app

@@ -1,5 +1,5 @@
 /// \file
-/// What the program takes from PCL, loaded when it is first needed.
+/// The functions of PCL that the program uses, in a module that is loaded when first needed.
 #pragma once
 
 #include "ahm/pcl/filters.hpp"
@@ -7,14 +7,14 @@
 
 namespace ahm::app {
 
-/// What the module pcl offers, under the name ahm_pcl.
+/// The functions of the module pcl, exported as `ahm_pcl`.
 struct PclFunctions {
   decltype(&pcl_bridge::voxel_grid) voxel_grid;
-  std::vector<Index> (*outlier_removal)(std::span<const Vec3> points);  ///< with its usual numbers
+  std::vector<Index> (*outlier_removal)(std::span<const Vec3> points);  ///< with the default parameters
   decltype(&pcl_bridge::kdtree_search) kdtree_search;
 };
 
-/// @throws IoError where the module cannot be loaded
+/// Loads the module if necessary. @throws IoError (the module cannot be loaded)
 const PclFunctions& pcl_functions();
 
 }  // namespace ahm::app

@@ -38,7 +38,7 @@ CloudOptions cloud_options(const InputOptions& options, const Progress& progress
   return result;
 }
 
-/// The surface's own report, with what was done to the cloud before.
+/// The report of the surface, with the figures of the filters.
 Report report_of(const PreparedCloud& prepared, const Report& own) {
   Report result;
   for (const Figure& figure : own) {

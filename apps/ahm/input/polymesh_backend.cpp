@@ -30,7 +30,7 @@ Built build(const io::Geometry& input, const InputOptions& options, const std::o
       input.points, input.face_begin, input.face_vertices, polygon_options(options, progress))));
 }
 
-/// The virtual ones in faces.
+/// The number of virtual vertices in faces.
 std::size_t more_vertices(const io::Geometry& input, const InputOptions& options) {
   return options.discretization == "polygons" ? 0 : input.face_count();
 }

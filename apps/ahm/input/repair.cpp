@@ -10,7 +10,7 @@
 namespace ahm::app {
 namespace {
 
-/// Backends refuse points that are not finite, also where no face uses them.
+/// Replaces non-finite points by a finite one: backends reject them even where no face uses them.
 io::Geometry finite(io::Geometry input) {
   const auto good = std::ranges::find_if(input.points, [](const Vec3& p) { return is_finite(p); });
   if (good == input.points.end()) return input;
@@ -24,11 +24,13 @@ io::Geometry finite(io::Geometry input) {
 std::optional<RepairedMesh> repair(io::Geometry& input, const InputOptions& options) {
   if (!options.repair.any()) return std::nullopt;
   if (input.face_count() == 0)
-    throw InvalidArgument("--repair, --weld, --drop-degenerate, --drop-duplicates and --orient are for meshes: " +
-                          options.path + " has no faces");
+    throw InvalidArgument(
+        "--repair, --weld, --drop-degenerate, --drop-duplicates and --orient require a mesh; leave them out, because " +
+        options.path + " has no faces");
   RepairedMesh mesh = repair_mesh(input.points, input.faces(), options.repair);
   if (mesh.given_face.empty())
-    throw InvalidGeometry(options.path + ": no face remains when it is repaired; --backend pointcloud maps its points");
+    throw InvalidGeometry(options.path +
+                          ": no face remains after the repair; map its points with --backend pointcloud");
   input.face_begin = mesh.face_begin;
   input.face_vertices = mesh.face_vertices;
   return mesh;
@@ -45,8 +47,7 @@ SourceSpec in_kept_faces(const SourceSpec& spec, const std::vector<Index>& kept,
 }
 
 SourceSpec in_remaining_faces(const SourceSpec& spec, const RepairedMesh& mesh) {
-  return in_kept_faces(spec, mesh.given_face,
-                       "there is no such face, or the repair has dropped it; choose another one");
+  return in_kept_faces(spec, mesh.given_face, "there is no such face, or the repair dropped it; choose another face");
 }
 
 Built build_repaired(const Backend& backend, const io::Geometry& input, RepairedMesh mesh, const InputOptions& options,

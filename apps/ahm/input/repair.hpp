@@ -1,5 +1,5 @@
 /// \file
-/// Meshes are mended between the reader and the backend.
+/// Repair of meshes, after reading and before the backend.
 #pragma once
 
 #include <optional>
@@ -9,17 +9,20 @@
 
 namespace ahm::app {
 
-/// Mends what the options ask for: the faces of the input become those that remain.
-/// @return none where nothing is asked for. @throws InvalidArgument where the input has no faces to mend
+/// Applies the repairs of the options. The faces of the input become those that remain.
+/// @return none if the options contain no repair. @throws InvalidArgument (no faces), InvalidGeometry (no face remains)
 std::optional<RepairedMesh> repair(io::Geometry& input, const InputOptions& options);
 
-/// The source in faces of which those are kept, ascending. @throws InvalidArgument where its face is none: `gone`
+/// The source with its face renumbered for the kept faces.
+/// @param kept  ascending
+/// @param gone  message of the error
+/// @throws InvalidArgument (the face is not kept)
 SourceSpec in_kept_faces(const SourceSpec& spec, const std::vector<Index>& kept, const char* gone);
-/// The source in the faces that remain. @throws InvalidArgument where its face was dropped
+/// The source with its face renumbered for the faces that remain after the repair. @throws InvalidArgument (the face was dropped)
 SourceSpec in_remaining_faces(const SourceSpec& spec, const RepairedMesh& mesh);
 
-/// `backend.build` of a mended input, with the rows that were given.
-/// @param source  in the faces that remain. @throws as it
+/// Builds the surface of a repaired input (`backend.build`); its rows are those of the input.
+/// @param source  its face is numbered among those that remain. @throws as `backend.build`
 Built build_repaired(const Backend& backend, const io::Geometry& input, RepairedMesh mesh, const InputOptions& options,
                      const std::optional<SourceSpec>& source, const Progress& progress);
 

@@ -17,7 +17,7 @@ namespace ahm::app {
 
 namespace {
 
-/// That of a position is the nearest of the faces' vertices.
+/// The position of the source; for a position the nearest vertex that a face uses.
 Vec3 center_of(const io::Geometry& input, const SourceSpec& source) {
   const Vec3 given = position_in(input, source, "--source");
   if (!std::holds_alternative<SourcePosition>(source)) return given;
@@ -26,7 +26,7 @@ Vec3 center_of(const io::Geometry& input, const SourceSpec& source) {
   return input.points[nearest];
 }
 
-/// From a point to the box around a face: no greater than to the face.
+/// Distance from a point to the bounding box of a face; not larger than the distance to the face.
 double distance_to_box(const Vec3& p, std::span<const Index> face, const std::vector<Vec3>& points) {
   Vec3 away{};
   for (std::size_t c = 0; c < 3; ++c) {
@@ -54,7 +54,7 @@ std::int64_t used_vertices(const io::Geometry& input) {
   return std::count(used.begin(), used.end(), true);
 }
 
-/// Vertices around which the kept faces lie in several fans: more faces there than sides that two of them share.
+/// Vertices whose kept faces form several fans: they have more faces than edges that two of these faces share.
 std::vector<bool> pinched_vertices(const io::Geometry& input, const std::vector<bool>& kept) {
   std::vector<std::pair<Index, Index>> sides;
   std::vector<Index> fans(input.points.size(), 0);
@@ -74,7 +74,7 @@ std::vector<bool> pinched_vertices(const io::Geometry& input, const std::vector<
   return result;
 }
 
-/// Adds the faces of pinched vertices until there are none, but for those that are pinched in the input.
+/// Adds the faces around pinched vertices until only vertices that are pinched in the input remain.
 void close_fans(const io::Geometry& input, std::vector<bool>& kept) {
   for (bool more = true; more;) {
     more = false;
@@ -113,10 +113,11 @@ Surroundings surroundings(const io::Geometry& input, double radius, const Source
     if (kept[f]) result.faces.push_back(static_cast<Index>(f));
   if (result.faces.empty())
     throw InvalidArgument(
-        fmt::format("--local: no face comes within {:.6g} of the source {}", 1.5 * radius, to_string(source)));
+        fmt::format("--local: no face is within {:.6g} of the source {}; use a larger radius, or leave it out",
+                    1.5 * radius, to_string(source)));
   try {
     result.whole = face_parts(static_cast<Index>(input.points.size()), input.faces());
-  } catch (const InvalidGeometry&) {  // NOLINT(bugprone-empty-catch): there is no surface of all to agree with
+  } catch (const InvalidGeometry&) {  // NOLINT(bugprone-empty-catch): no surface can be built from all faces
   }
   return result;
 }

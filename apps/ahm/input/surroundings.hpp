@@ -1,5 +1,5 @@
 /// \file
-/// What --local left out, in the results of all of the input.
+/// The faces around the source, for --local.
 #pragma once
 
 #include <vector>
@@ -12,29 +12,30 @@
 
 namespace ahm::app {
 
-/// Some faces of a mesh, and what the others tell of them.
+/// Some faces of a mesh, with the orientation and parts of the whole mesh.
 struct Surroundings {
-  std::vector<Index> faces;  ///< ascending
-  /// Of all faces, so that the surface of some is oriented like that of all; empty where no surface can be built of all.
+  std::vector<Index> faces;  ///< the kept faces, ascending
+  /// Parts and orientation of all faces, so that the kept faces are oriented as in the whole mesh. Empty if no surface can be built
+  /// from all faces.
   FaceParts whole;
 
-  /// Of `faces`, those that the surface of all turns over.
+  /// For each of `faces`: 1 if it is reversed in the surface of all faces.
   std::vector<std::uint8_t> turned() const;
-  /// Per vertex the part of its last face, -1 where no face uses it.
+  /// For each vertex the part of its last face, -1 if no face uses it.
   /// @param input  with all faces
   std::vector<Index> part_of_vertices(const io::Geometry& input) const;
 };
 
-/// The faces that come within one and a half radii of the source in a straight line, or of the vertex nearest to it where it
-/// is a position: no path of the length of the radius comes farther than that, and half of it keeps the new boundary away.
-/// Where they would meet at a vertex alone, all faces of the vertex are kept, too.
+/// The faces within 1.5 radii of the source in a straight line; for a position, of the vertex nearest to it. Paths up to the radius
+/// stay within one radius, and the additional half keeps the new boundary away from them. Where kept faces would touch only at a vertex,
+/// all faces of the vertex are kept.
 /// @param input   with faces
-/// @param source  in its faces
-/// @throws InvalidArgument where no face comes so near
+/// @param source  its face is numbered as in `input`
+/// @throws InvalidArgument (no face is within that distance)
 Surroundings surroundings(const io::Geometry& input, double radius, const SourceSpec& source);
 
-/// Leaves these faces alone. @param kept  ascending
-/// @return how many vertices no face uses any more
+/// Removes all faces except the kept ones. @param kept  ascending
+/// @return number of vertices that only removed faces use
 std::int64_t keep_faces(io::Geometry& input, const std::vector<Index>& kept);
 void keep_faces(RepairedMesh& mesh, const std::vector<Index>& kept);
 

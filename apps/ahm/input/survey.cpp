@@ -41,7 +41,7 @@ std::vector<double> edge_lengths(const io::Geometry& input) {
   return lengths;
 }
 
-/// Perpendicular to a face, on the side from which it runs counter-clockwise, as long as twice its area by `unit`^2.
+/// Normal of a face, on the side from which its corners run counterclockwise. Its length is twice the area divided by unit^2.
 Vec3 face_normal(const io::Geometry& input, std::span<const Index> face, double unit) {
   Vec3 sum{};
   for (std::size_t c = 2; c < face.size(); ++c) {
@@ -108,13 +108,13 @@ MeshSurvey survey_mesh(const io::Geometry& input) {
 UnitGuess guess_unit(std::string_view format, const Vec3& low, const Vec3& high) {
   const double diagonal = distance(low, high);
   const double east = low[0] / 2 + high[0] / 2, north = low[1] / 2 + high[1] / 2;
-  if (format.starts_with("glTF")) return {"metres", "glTF counts in metres"};
+  if (format.starts_with("glTF")) return {"meters", "the unit of glTF"};
   if (std::hypot(east, north) > 1e5 && std::hypot(east, north) > 20 * diagonal && diagonal > 1)
-    return {"metres", "the coordinates look like those of a map projection"};
-  if (format.starts_with("LAS")) return {"metres", "surveys are in metres as a rule"};
-  if (format.starts_with("PCD") && diagonal > 0.02 && diagonal < 1e4) return {"metres", "PCD files are as a rule"};
+    return {"meters", "the coordinates look like those of a map projection"};
+  if (format.starts_with("LAS")) return {"meters", "usual for surveys"};
+  if (format.starts_with("PCD") && diagonal > 0.02 && diagonal < 1e4) return {"meters", "usual for PCD files"};
   if (format.starts_with("STL") && diagonal > 1 && diagonal < 1e4)
-    return {"millimetres", "STL files of parts are as a rule"};
+    return {"millimeters", "usual for STL files of parts"};
   return {};
 }
 
@@ -124,7 +124,7 @@ double quantile(std::vector<double>& values, double q) {
   return detail::value_at(values, static_cast<std::size_t>(q * static_cast<double>(values.size() - 1)));
 }
 
-/// Between the faces of every edge inside.
+/// Angle between the normals of the two triangles at each interior edge, degrees.
 std::vector<double> bends(const FlatTriangles& flat) {
   const auto corner = [&](Index v) { return (1 / flat.length_unit) * flat.positions[v]; };
   const auto normal = [&](exact::Half h) {
@@ -168,7 +168,7 @@ MethodAdvice method_advice(const Surface& surface) {
 
 std::string as_text(const MethodAdvice& advice) {
   if (!advice.exact_possible)
-    return fmt::format("{}; exact is not possible: {}", to_string(advice.method), advice.problem);
+    return fmt::format("{}; exact maps are not possible: {}", to_string(advice.method), advice.problem);
   const auto degrees = [](double angle) {
     const std::string number = angle < 10 ? fmt::format("{:.2g}", angle) : fmt::format("{:.0f}", angle);
     return number + (number == "1" ? " degree" : " degrees");
@@ -177,9 +177,8 @@ std::string as_text(const MethodAdvice& advice) {
                                        degrees(advice.median_bend), degrees(advice.sharp_bend));
   if (advice.exact_first)
     return fmt::format("--method exact for a few maps, {} for many ({})", to_string(advice.method), bend);
-  return fmt::format(
-      "{}; --method exact, on large meshes with --radius or --tolerance, where it has to follow every face ({})",
-      to_string(advice.method), bend);
+  return fmt::format("{}; to follow every face use --method exact, on large meshes with --radius or --tolerance ({})",
+                     to_string(advice.method), bend);
 }
 
 namespace {
@@ -208,7 +207,7 @@ std::optional<LengthRange> find_spacing(std::vector<Vec3> places) {
   if (places.size() < 2) return std::nullopt;
   double size = 0;
   for (const Vec3& p : places) size = std::max(size, largest(p));
-  const double unit = power_of_two_below(size);  // the search squares lengths
+  const double unit = power_of_two_below(size);  // scaled, because the search squares lengths
   for (Vec3& p : places) p = 1 / unit * p;
   const auto search = pointcloud::nanoflann_search(places);
   constexpr std::size_t sample = 20000;
@@ -233,9 +232,9 @@ std::vector<Index> rows_of(const Surface& surface, const std::vector<Index>& com
   return rows;
 }
 
-/// Of these rows one in the middle of what is seen along the thinnest side of their box: of those that stand in front, one in each
-/// cell of a raster so coarse that what is behind does not show through, the nearest to the mean in the picture's plane. (On a
-/// solid the point nearest to the mean lies where nobody sees it, among noisy points within the others.)
+/// A visible row near the middle of these rows. The view runs along the shortest side of their bounding box. A raster holds the
+/// foremost row of each cell; its cells are so large that rows behind do not show through. The result is the foremost row nearest to
+/// the mean in the image plane. (The row nearest to the mean in space may be a noisy point inside a solid.)
 Index central_row(std::span<const Vec3> positions, const std::vector<Index>& rows) {
   Vec3 low = positions[rows[0]], high = low, mean{};
   double count = 0;
@@ -279,7 +278,7 @@ SurfaceSurvey survey_surface(const Built& built) {
   return result;
 }
 
-/// Whether the source can be mapped from without the outliers.
+/// Whether the source remains a vertex after the outliers are removed.
 bool can_remove_outliers(const Backend& backend, const io::Geometry& input, InputOptions options, Index source,
                          const Progress& progress) {
   options.outliers = true;
@@ -299,10 +298,10 @@ std::optional<RepairSurvey> survey_repair(const io::Geometry& input) {
                       inspect_mesh(static_cast<Index>(input.points.size()), mesh.faces()).topology.components};
 }
 
-/// One way to make a surface of the input.
+/// Options for one attempt to build a surface from the input.
 struct Attempt {
   InputOptions options;
-  std::string flags;  ///< that say so, each after a blank
+  std::string flags;  ///< the options as text, each after a blank
   bool as_cloud = false;
 };
 
@@ -327,14 +326,15 @@ Attempt as_cloud(const Survey& s, const InputOptions& options) {
   return attempt;
 }
 
-/// Repairs where parts of the mesh only touch; as it is; repaired; the points alone.
+/// The attempts in their order: the mesh unchanged, the repaired mesh, the points only. The repaired mesh comes first if the repair
+/// joins parts.
 std::vector<Attempt> attempts(const Survey& s, const InputOptions& options) {
   if (!s.mesh) return {as_cloud(s, options)};
   const bool joins = s.repair->parts > 0 && s.repair->parts < s.mesh->inspection.topology.components;
   return {as_mesh(s, options, joins), as_mesh(s, options, !joins), as_cloud(s, options)};
 }
 
-/// Builds the surface as the command that is suggested will.
+/// Builds the surface with the options of the suggested command.
 void try_surface(io::Geometry input, const Attempt& attempt, const Progress& progress, Survey& s) {
   if (attempt.as_cloud) input.face_begin.clear(), input.face_vertices.clear();
   std::optional<RepairedMesh> mesh = repair(input, attempt.options);
@@ -344,7 +344,7 @@ void try_surface(io::Geometry input, const Attempt& attempt, const Progress& pro
   const Built built = mesh ? build_repaired(backend, input, *mesh, attempt.options, {}, progress)
                            : backend.build(input, attempt.options, {}, progress);
   s.surface = survey_surface(built);
-  // Many small components are stray points as a rule.
+  // Many small components are usually stray points.
   if (attempt.as_cloud && s.surface->part_sizes.size() > 20 &&
       can_remove_outliers(backend, input, attempt.options, s.surface->central_row, progress))
     flags += " --outliers";

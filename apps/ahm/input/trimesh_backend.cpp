@@ -17,8 +17,8 @@ std::vector<Triangle> triangles(const io::Geometry& input) {
   for (std::size_t f = 0; f < input.face_count(); ++f) {
     const auto face = input.face(f);
     if (face.size() != 3)
-      throw InvalidGeometry(
-          fmt::format("face {} has {} corners; --backend trimesh takes triangles only", f, face.size()));
+      throw InvalidGeometry(fmt::format(
+          "face {} has {} corners; --backend trimesh requires triangles, use --backend polymesh", f, face.size()));
     result.push_back({face[0], face[1], face[2]});
   }
   return result;

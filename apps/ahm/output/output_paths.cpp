@@ -31,7 +31,7 @@ bool is_folder(const std::string& name) {
 void make_folder(const std::string& name) {
   std::error_code error;
   fs::create_directory(name, error);
-  if (error) throw IoError(fmt::format("the folder '{}' cannot be made: {}", name, error.message()));
+  if (error) throw IoError(fmt::format("the folder '{}' cannot be created: {}", name, error.message()));
 }
 
 }  // namespace
@@ -67,7 +67,7 @@ bool same_file(const fs::path& a, const fs::path& b) {
   return io::without_links(a) == io::without_links(b);
 }
 
-/// Whether a file is an input, or what one is read with. Each input is asked for that once.
+/// Whether a file is the input or belongs to it. The files of each input are looked up once.
 bool is_read(const fs::path& file, const std::string& input) {
   static std::map<std::string, std::vector<fs::path>> beside;
   if (same_file(file, input == "-" ? "/dev/stdin" : input)) return true;
@@ -79,7 +79,8 @@ bool is_read(const fs::path& file, const std::string& input) {
 void check_directory(const OutputPath& output) {
   const fs::path path(output.path);
   std::error_code error;
-  if (fs::is_directory(path, error)) throw IoError(fmt::format("{} {}: is a directory", output.option, output.path));
+  if (fs::is_directory(path, error))
+    throw IoError(fmt::format("{} {}: this is a directory; write the name of a file", output.option, output.path));
   const fs::path parent = path.has_parent_path() ? path.parent_path() : fs::path(".");
   if (!fs::is_directory(parent, error))
     throw IoError(fmt::format("{} {}: there is no directory '{}'", output.option, output.path, parent.string()));
@@ -98,17 +99,19 @@ void check_outputs(const std::vector<std::string>& inputs, const std::vector<Out
     if (!is_stream) check_directory(outputs[i]);
     for (const std::string& input : inputs)
       if (!is_stream && is_read(path, input))
-        throw InvalidArgument(
-            fmt::format("{} {}: is the input file, or one that it names; it would be overwritten", option, path));
+        throw InvalidArgument(fmt::format(
+            "{} {}: would overwrite the input file, or a file that belongs to it; choose another name", option, path));
     for (const std::string& list : lists_read())
       if (same_file(path, list))
         throw InvalidArgument(
-            fmt::format("{} {}: is a list that is read by this command; it would be overwritten", option, path));
+            fmt::format("{} {}: would overwrite a list that this command reads; choose another name", option, path));
     if (keep_existing && fs::exists(path) && !is_stream)
-      throw InvalidArgument(fmt::format("{} {}: exists; leave --no-overwrite out to replace it", option, path));
+      throw InvalidArgument(
+          fmt::format("{} {}: the file exists; leave --no-overwrite out to replace it", option, path));
     for (std::size_t j = 0; j < i; ++j)
       if (is_file(outputs[j]) && same_file(path, outputs[j].path))
-        throw InvalidArgument(fmt::format("{} and {} name the same file {}", outputs[j].option, option, path));
+        throw InvalidArgument(
+            fmt::format("{} and {} are the same file {}; choose different names", outputs[j].option, option, path));
   }
 }
 
@@ -119,7 +122,7 @@ void check_ending(const OutputPath& output, const std::vector<std::string>& endi
   const std::string& last = endings.back();
   const std::string others = fmt::format("{}", fmt::join(endings.begin(), endings.end() - 1, ", "));
   throw InvalidArgument(fmt::format("{} {}: {} {}{}{}", output.option, output.path,
-                                    format.empty() ? "the name must end in" : "--format must be that of", others,
+                                    format.empty() ? "the name must end in" : "--format must be the format of", others,
                                     others.empty() ? "" : " or ", last));
 }
 

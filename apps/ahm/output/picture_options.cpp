@@ -14,26 +14,27 @@ constexpr const char* group = "Pictures";
 
 std::array<int, 2> parse_size(const std::string& text) {
   const std::size_t cross = text.find('x');
-  if (cross == std::string::npos) throw std::invalid_argument("'" + text + "' is not WxH, as in 1600x1200");
+  if (cross == std::string::npos)
+    throw std::invalid_argument("'" + text + "' is not of the form WxH, such as 1600x1200");
   const auto side = [](const std::string& part) { return static_cast<int>(parse_integer(part, 16, 8192)); };
   return {side(text.substr(0, cross)), side(text.substr(cross + 1))};
 }
 
 int parse_sectors(const std::string& text) {
   const auto sectors = static_cast<int>(parse_integer(text, 2, 720));
-  if (sectors % 2 != 0) throw std::invalid_argument("'" + text + "' is odd, so that the checkerboard would not close");
+  if (sectors % 2 != 0) throw std::invalid_argument("'" + text + "' is odd; the checkerboard requires an even number");
   return sectors;
 }
 
 void add_size(CLI::App& app, const std::string& name, PictureChoice& choice) {
-  add_parsed(app, name, choice.size, parse_size, "WxH", "Pixels of a .png (default 1600x1200)")
+  add_parsed(app, name, choice.size, parse_size, "WxH", "Size of a .png picture in pixels (default 1600x1200)")
       ->group(group)
       ->needs("--view");
 }
 
 void add_view_from(CLI::App& app, PictureChoice& choice) {
   add_parsed(app, "--view-from", choice.from, parse_direction, "X,Y,Z",
-             "Direction from the surface to the viewer (default: where the source is seen)")
+             "Direction from the surface to the viewer (default: one from which the source is visible)")
       ->group(group)
       ->needs("--view");
 }
@@ -43,15 +44,17 @@ void add_view_from(CLI::App& app, PictureChoice& choice) {
 void add_map_picture(CLI::App& app, PictureChoice& choice) {
   add_size(app, "--size", choice);
   add_view_from(app, choice);
-  add_parsed(app, "--rings", choice.rings, parse_positive, "R", "Width of a ring or square (default: a round number)")
+  add_parsed(app, "--rings", choice.rings, parse_positive, "R",
+             "Width of a ring or square in the unit of INPUT (default: a round number)")
       ->group(group)
       ->needs("--view");
-  add_parsed(app, "--sectors", choice.sectors, parse_sectors, "N", "Sectors of the polar pattern, even (default 24)")
+  add_parsed(app, "--sectors", choice.sectors, parse_sectors, "N",
+             "Number of sectors of the polar pattern, even (default 24)")
       ->group(group)
       ->needs("--view");
   add_parsed(app, "--color", choice.color, ahm::app::choice({"polar", "distance", "none"}), "BY",
-             "polar (default): rings and sectors, squares along a curve, a color per cell;\n"
-             "distance: with a bar that tells the numbers; none: the surface alone")
+             "polar (default): rings and sectors; for curves squares, for cells one color per cell.\n"
+             "distance: colors by distance, with a color bar. none: only the surface")
       ->group(group)
       ->needs("--view");
 }

@@ -1,5 +1,5 @@
 /// \file
-/// How --view draws, and what a picture would not say by itself.
+/// The options of pictures (--view).
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@ class App;
 
 namespace ahm::app {
 
-/// The options that go with --view. Empty: as the picture chooses.
+/// The options of --view. Empty: the default of the picture.
 struct PictureChoice {
   std::optional<std::array<int, 2>> size;
   std::optional<Vec3> from;
@@ -23,15 +23,15 @@ struct PictureChoice {
   std::string color = "polar";
 };
 
-/// --size, --view-from, --rings, --sectors, --color
+/// Adds --size, --view-from, --rings, --sectors and --color.
 void add_map_picture(CLI::App& app, PictureChoice& choice);
-/// --view-size, --view-from: for subcommands with a --size of their own
+/// Adds --view-size and --view-from, for subcommands with a --size of their own.
 void add_texture_picture(CLI::App& app, PictureChoice& choice);
 
-/// @param threads  0: one per core
+/// The options in the form of the renderer. @param threads  0: one per core
 render::PictureOptions picture_options(const PictureChoice& choice, unsigned threads);
 
-/// Writes the picture of a map. @param usual  the subcommand's own pattern, where the colors are not chosen
+/// Writes the picture of a map. @param usual  pattern of the subcommand, for `color` "polar"
 void draw(const std::string& path, const render::Scene& scene, render::Pattern usual, const PictureChoice& choice,
           unsigned threads);
 

@@ -46,13 +46,13 @@ void comment_on_statuses(const std::vector<Status>& status, const std::string& i
   const auto total = static_cast<double>(status.size());
   if (const auto apart = count(Status::disconnected); static_cast<double>(apart) > 0.1 * total)
     journal.add_warning(
-        fmt::format("{:.0f} % of the vertices are not connected to the source; 'ahm info {}' tells about components",
+        fmt::format("{:.0f} % of the vertices are not connected to the source; 'ahm info {}' lists the components",
                     100.0 * static_cast<double>(apart) / total, input));
   if (const auto unreached = count(Status::unreached); unreached > 0)
-    journal.add_warning(
-        fmt::format("no heat reaches {} vertices: with --strategy global they are too far away (the "
-                    "march has no such limit), else the weights around them are too bad",
-                    unreached));
+    journal.add_warning(fmt::format(
+        "vertices that no heat reaches: {}; with --strategy global they are too far away (use --strategy march), "
+        "otherwise the weights around them are too irregular",
+        unreached));
 }
 
 std::ptrdiff_t untrusted(const std::vector<double>& quality) {
@@ -69,14 +69,14 @@ void comment_on_quality(const std::vector<double>& quality, std::string_view adv
   const std::ptrdiff_t mapped = count_mapped(quality), poor = untrusted(quality);
   if (5 * poor <= mapped) return;
   journal.add_warning(fmt::format(
-      "at {:.0f} % of the mapped vertices the map is not to be trusted (quality below {}): they lie beyond a cut "
-      "locus, in folds, or where the surface is too coarse; {}",
+      "the map is not reliable at {:.0f} % of the mapped vertices (quality below {}): they lie beyond a cut locus, in "
+      "folds, or where the mesh is too coarse; {}",
       100.0 * static_cast<double>(poor) / static_cast<double>(mapped), trusted_quality, advice));
 }
 
 namespace {
 
-/// Normals are for viewers, and take their time on large surfaces.
+/// Whether an output contains normals. They are for viewers, and take long on large surfaces.
 bool shows_normals(const OutputOptions& output) {
   return !output.view.empty() || io::writes_for_viewers(output.output, output.format);
 }

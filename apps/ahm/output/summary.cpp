@@ -37,7 +37,7 @@ void deliver(nlohmann::ordered_json summary, const std::string& text, const Outp
   const auto write_summary = [&] { write_json(output.json, summary, output.json_lines); };
   const bool is_told = output.json == "-";
   if (!is_told) write_summary();
-  io::FileSet::commit();  // whoever reads what is told now finds them, and nobody has to
+  io::FileSet::commit();  // the files exist before their names are printed, even if printing fails
   if (is_told) write_summary();
   if (output.verbosity == Verbosity::quiet) return;
   std::vector<std::string> wrote;

@@ -1,5 +1,5 @@
 /// \file
-/// The last step of every subcommand that maps: what it tells about a run, to people and to programs.
+/// The summary of a run, for users and for programs: the last step of every subcommand.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -10,19 +10,18 @@
 
 namespace ahm::app {
 
-/// The head of a summary for programs: program, input, output (if there is one), backend.
+/// The head of a summary for programs: program, input, output and view (if set), backend.
 nlohmann::ordered_json summary(const std::string& program, const std::string& path, const OutputOptions& output,
                                const Input& input);
 
-/// Ends a summary with warnings, times and memory, and delivers it: JSON to --json, text to people, on standard error
-/// where standard output is taken.
-/// @param text     what people read before times and names of files
-/// @param further  of the JSON, at its end
+/// Completes a summary with warnings, times and memory, and writes it: as JSON to --json, and as text to standard output, or to
+/// standard error if standard output has other contents. `further` has entries for the end of the JSON.
+/// @param text  text for users, before times and names of files
 void deliver(nlohmann::ordered_json summary, const std::string& text, const OutputOptions& output, Journal& journal,
              const nlohmann::ordered_json& further);
 void deliver(nlohmann::ordered_json summary, const std::string& text, const OutputOptions& output, Journal& journal);
 
-/// Writes JSON to standard output ("-"), to a file, or not at all (""). Names that are not UTF-8 are made so.
+/// Writes JSON to standard output ("-"), to a file, or not at all (""). Replaces bytes that are not UTF-8.
 /// @throws IoError, BrokenPipe
 void write_json(const std::string& target, const nlohmann::ordered_json& json, bool in_one_line = false);
 

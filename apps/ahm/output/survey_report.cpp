@@ -27,7 +27,7 @@ std::string triple(const Vec3& v) { return fmt::format("{:.6g} {:.6g} {:.6g}", v
 
 Vec3 extent(const Survey& s) { return {s.high[0] - s.low[0], s.high[1] - s.low[1], s.high[2] - s.low[2]}; }
 
-/// The entry of a report, or its type's zero.
+/// The figure of a report with this id; a zero value if there is none.
 template <class Value>
 Value figure(const SurfaceSurvey& surface, std::string_view id) {
   for (const Figure& entry : surface.report)
@@ -37,19 +37,18 @@ Value figure(const SurfaceSurvey& surface, std::string_view id) {
 
 std::string normals_text(const Survey& s) {
   if (s.mesh && !s.as_cloud) {
-    constexpr std::string_view unneeded = "(not needed: faces have their own)";
+    constexpr std::string_view unneeded = "(not used: the faces define the normals)";
     if (!s.normals) return fmt::format("none {}", unneeded);
     const std::size_t against = s.mesh->normals_against;
     return against == 0
                ? fmt::format("yes {}", unneeded)
-               : fmt::format("yes, but {} of {} point to the back of their faces {}", against, s.points, unneeded);
+               : fmt::format("yes, pointing to the back of their faces: {} of {} {}", against, s.points, unneeded);
   }
   if (!s.normals) return "none (they will be estimated)";
-  if (s.bad_normals > 0)
-    return fmt::format("yes, but {} are zero or not finite (they will be estimated)", s.bad_normals);
+  if (s.bad_normals > 0) return fmt::format("yes, zero or not finite: {} (they will be estimated)", s.bad_normals);
   if (!s.surface) return "yes";
   return figure<bool>(*s.surface, "oriented") ? "yes, consistently oriented"
-                                              : "yes, signs not consistent: only their planes are used";
+                                              : "yes, with inconsistent signs: only their planes are used";
 }
 
 std::string parts_text(const Survey& s) {
@@ -57,7 +56,7 @@ std::string parts_text(const Survey& s) {
   double total = 0;
   for (Index size : sizes) total += size;
   const std::string at = s.as_cloud ? fmt::format(" at k = {}", figure<std::int64_t>(*s.surface, "k")) : "";
-  return fmt::format("{}{}; the largest holds {} {} ({:.1f} %)", sizes.size(), at, sizes[0],
+  return fmt::format("{}{}; the largest has {} {} ({:.1f} %)", sizes.size(), at, sizes[0],
                      sizes[0] == 1 ? "vertex" : "vertices", 100.0 * sizes[0] / total);
 }
 
@@ -66,7 +65,7 @@ std::string range_text(const LengthRange& range, const char* what) {
                      range.largest, what, range.count);
 }
 
-/// "3 of this, 2 of that": the counts that are not zero.
+/// The counts that are not zero as text: "3 with a repeated vertex, 2 duplicate"; otherwise "none".
 std::string counts_text(std::initializer_list<std::pair<std::int64_t, std::string>> counts) {
   std::string text;
   for (const auto& [count, what] : counts)
@@ -86,42 +85,42 @@ std::string faces_text(const MeshSurvey& mesh) {
     text += shown++ == 0 ? "" : ", ";
     text += corners == 3   ? counted(number, "triangle")
             : corners == 4 ? counted(number, "quadrilateral")
-                           : fmt::format("{} of {} corners", count, corners);
+                           : fmt::format("{} with {} corners", count, corners);
   }
-  return others > 0 ? text + fmt::format(", {} of more", others) : text;
+  return others > 0 ? text + fmt::format(", {} with more corners", others) : text;
 }
 
 std::string wrong_faces_text(const MeshInspection& found) {
-  return counts_text({{std::ssize(found.outside), "with a vertex that there is not"},
-                      {std::ssize(found.small), "of fewer than three corners"},
-                      {std::ssize(found.repeating), "with a vertex twice"},
-                      {std::ssize(found.duplicates), "given twice"}});
+  return counts_text({{std::ssize(found.outside), "with a vertex that does not exist"},
+                      {std::ssize(found.small), "with fewer than three corners"},
+                      {std::ssize(found.repeating), "with a repeated vertex"},
+                      {std::ssize(found.duplicates), "duplicate"}});
 }
 
 std::string boundary_text(const TopologyReport& t) {
-  return t.boundary_loops == 0 ? "none: closed"
+  return t.boundary_loops == 0 ? "none (closed surface)"
                                : counted(t.boundary_edges, "edge") + " in " + counted(t.boundary_loops, "loop");
 }
 
 std::string genus_text(const TopologyReport& t) {
   const std::string euler = fmt::format("Euler characteristic {}", t.euler_characteristic);
-  return t.genus() ? fmt::format("{} ({}{})", *t.genus(), t.components > 1 ? "of all parts together, " : "", euler)
+  return t.genus() ? fmt::format("{} ({}{})", *t.genus(), t.components > 1 ? "total of all parts, " : "", euler)
                    : "none (" + euler + ")";
 }
 
 std::string orientation_text(const TopologyReport& t) {
-  if (!t.orientable) return "not orientable: maps are made with reflections";
+  if (!t.orientable) return "not orientable: maps use reflections";
   return t.reoriented > 0 ? counted(t.reoriented, "face") + (t.reoriented == 1 ? " is" : " are") +
-                                " turned over to agree with the others"
+                                " reversed to agree with the others"
                           : "consistent";
 }
 
 std::string non_manifold_text(const TopologyReport& t) {
-  if (t.non_manifold_edges == 0 && t.non_manifold_vertices == 0) return "nowhere";
+  if (t.non_manifold_edges == 0 && t.non_manifold_vertices == 0) return "none";
   const auto vertices = [](Index count) { return fmt::format("{} {}", count, count == 1 ? "vertex" : "vertices"); };
   const std::string edges =
-      t.non_manifold_edges > 0 ? counted(t.non_manifold_edges, "edge") + " of more than two faces, " : "";
-  return fmt::format("{}{} of several fans of faces; --non-manifold split cuts there: {} more", edges,
+      t.non_manifold_edges > 0 ? counted(t.non_manifold_edges, "edge") + " with more than two faces, " : "";
+  return fmt::format("{}{} with several fans of faces; --non-manifold split cuts the mesh there and adds {}", edges,
                      vertices(t.non_manifold_vertices), vertices(t.added_vertices));
 }
 
@@ -132,12 +131,12 @@ std::string repair_text(const RepairSurvey& repair, const TopologyReport& t) {
     return fmt::format("{}{} {}", before, count == 1 ? "face" : "faces", after);
   };
   const std::string done = counts_text({{c.welded, c.welded == 1 ? "vertex joined" : "vertices joined"},
-                                        {c.shortened, faces(c.shortened, "", "without repeated corners")},
+                                        {c.shortened, faces(c.shortened, "", "shortened (repeated corners)")},
                                         {c.degenerate, faces(c.degenerate, "degenerate ", "dropped")},
-                                        {c.not_finite, faces(c.not_finite, "", "dropped, not finite")},
+                                        {c.not_finite, faces(c.not_finite, "", "with non-finite vertices dropped")},
                                         {c.duplicates, faces(c.duplicates, "duplicate ", "dropped")},
-                                        {c.turned, faces(c.turned, "", "turned over")}});
-  return fmt::format("--repair: {}; {} left", c.any() ? done : "cuts only", counted(repair.parts, "part"));
+                                        {c.turned, faces(c.turned, "", "reversed")}});
+  return fmt::format("--repair: {}; result: {}", c.any() ? done : "only cuts", counted(repair.parts, "part"));
 }
 
 std::string mesh_text(const Survey& s) {
@@ -148,7 +147,7 @@ std::string mesh_text(const Survey& s) {
   text += line("wrong faces", wrong_faces_text(mesh.inspection));
   text += line("faces without area", fmt::format("{}", mesh.without_area));
   text += line("unused vertices", fmt::format("{}", t.unreferenced));
-  text += line("not a manifold", non_manifold_text(t));
+  text += line("nonmanifold", non_manifold_text(t));
   text += line("repair", repair_text(*s.repair, t));
   if (t.faces == 0) return text;
   text += line("boundary", boundary_text(t));
@@ -174,22 +173,23 @@ std::string as_text(const Survey& s, const std::string& path) {
   text += line("faces", s.mesh ? fmt::format("{}: {}", s.faces, faces_text(*s.mesh)) : "0");
   text += line("normals", normals_text(s));
   text += line("colors", s.colors ? "yes" : "none");
-  if (!s.columns.empty()) text += line("further columns", fmt::format("{}", fmt::join(s.columns, ", ")));
+  if (!s.columns.empty()) text += line("other columns", fmt::format("{}", fmt::join(s.columns, ", ")));
   if (s.acquisition && s.acquisition->height != 1)
     text += line("picture", fmt::format("{} x {}", s.acquisition->width, s.acquisition->height));
   text += line("non-finite points",
                s.non_finite == 0 ? "0" : fmt::format("{}{}", s.non_finite, s.as_cloud ? ": use --drop-nan" : ""));
   text += line("exact duplicates",
-               s.duplicates == 0 ? "0"
-                                 : fmt::format("{} ({})", s.duplicates,
-                                               s.as_cloud ? "they will be merged" : "faces are not joined there"));
+               s.duplicates == 0
+                   ? "0"
+                   : fmt::format("{} ({})", s.duplicates,
+                                 s.as_cloud ? "they will be merged" : "faces are not joined there; see --weld"));
   if (s.points > s.non_finite) {
     text += line("bounds", fmt::format("{}  to  {}", triple(s.low), triple(s.high)));
     const Vec3 e = extent(s);
     text += line("extent", fmt::format("{}  diagonal {:.6g}", triple(e), std::hypot(e[0], e[1], e[2])));
     const UnitGuess guess = guess_unit(s.format, s.low, s.high);
     text +=
-        line("unit", guess.unit.empty() ? "the file does not tell" : fmt::format("{}? ({})", guess.unit, guess.reason));
+        line("unit", guess.unit.empty() ? "not stated in the file" : fmt::format("{}? ({})", guess.unit, guess.reason));
   }
   if (s.spacing)
     text += line("spacing", fmt::format("smallest {:.4g}, median {:.4g}, largest {:.4g} (at {})", s.spacing->smallest,
@@ -200,8 +200,8 @@ std::string as_text(const Survey& s, const std::string& path) {
   for (const std::string& w : s.warnings) text += line("note", w);
   if (!s.problem.empty()) text += line("problem", s.problem);
   const std::string command = suggestion(s, path);
-  if (s.mesh && s.as_cloud && !command.empty()) text += "No map can be made of the faces, but one of the points. ";
-  text += command.empty() ? "No map can be made of this file.\n" : "Try:\n  " + command + "\n";
+  if (s.mesh && s.as_cloud && !command.empty()) text += "No map can be made from the faces, but from the points. ";
+  text += command.empty() ? "No map can be made from this file.\n" : "Try:\n  " + command + "\n";
   return text;
 }
 

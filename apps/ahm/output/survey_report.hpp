@@ -1,5 +1,5 @@
 /// \file
-/// What `ahm info` tells of a survey.
+/// The report of `ahm info`.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -9,7 +9,7 @@
 
 namespace ahm::app {
 
-/// The command line to run on this file, or empty when nothing can be run.
+/// The suggested command line for this file; empty if no map can be made.
 std::string suggestion(const Survey& survey, const std::string& path);
 
 std::string as_text(const Survey& survey, const std::string& path);

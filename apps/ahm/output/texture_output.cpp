@@ -34,7 +34,7 @@ Colors painted(const Input& input, const std::vector<double>& places, const Imag
   for (std::size_t r = 0; r < colors.size(); ++r) {
     const auto vertex = input.vertex_standing_for(Row(static_cast<Index>(r)));
     if (!vertex) continue;
-    // Of equal points the first one is in the inverse.
+    // The inverse map contains only the first of several equal points.
     const auto k = static_cast<std::size_t>(rows.row(*vertex)->index);
     if (std::isnan(places[2 * k])) continue;
     const auto texel = image.sample(places[2 * k], places[2 * k + 1]);
@@ -57,9 +57,9 @@ void check_texture_output(const std::string& input, const OutputOptions& output,
                           const std::string& image) {
   check_ending({"--output", output.output}, extensions);
   if (!output.view.empty() && io::lower_extension(output.view) != ".png")
-    throw InvalidArgument(fmt::format("--view {}: pictures of textures are .png files", output.view));
+    throw InvalidArgument(fmt::format("--view {}: pictures of textures must be .png files", output.view));
   if (!io::has_images())
-    throw InvalidArgument("this build of ahm has no textures; build it with stb (Debian: libstb-dev)");
+    throw InvalidArgument("this build of ahm does not support textures; build it with stb (Debian: libstb-dev)");
   std::vector<OutputPath> outputs{{"--output", output.output}, {"--json", output.json}, {"--view", output.view}};
   if (io::lower_extension(output.output) == ".obj") {
     std::filesystem::path stem = output.output;

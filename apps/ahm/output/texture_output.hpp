@@ -1,5 +1,5 @@
 /// \file
-/// Textured meshes as files, and decals: a piece of mesh with a texture above the surface, or painted points.
+/// Output of textured meshes and decals: a textured part of the mesh above the surface, or colored points.
 #pragma once
 
 #include <array>
@@ -18,27 +18,28 @@
 
 namespace ahm::app {
 
-/// Before the work: whether all files can be written, those beside an .obj included, and none is `image`.
-/// @param extensions  that --output may have
+/// Checks before the work that all files can be written, including those that belong to an .obj, and that none replaces `image`.
+/// @param extensions  allowed extensions of --output
+/// @param parts       names of the textured parts, each of which is a .png of an .obj
 /// @throws IoError, InvalidArgument
 void check_texture_output(const std::string& input, const OutputOptions& output,
                           const std::vector<std::string>& extensions, const std::vector<std::string>& parts,
                           const std::string& image);
 
-/// The faces as the input has them, without normals; empty for a cloud.
+/// The faces of the input unchanged, without normals; empty for a cloud.
 SurfaceFaces given_faces(const io::Geometry& input);
 
-/// The faces of the input, oriented alike, with normals, also those that --local left out; empty for a cloud.
+/// All faces of the input, including those that --local left out, oriented consistently and with normals; empty for a cloud.
 SurfaceFaces all_faces(const Input& input);
 
-/// Numbers of the corners of the surface's faces, two each, as those of all faces of the input: NaN where --local left one out.
+/// Values at the corners of the surface's faces, two per corner, extended to all faces of the input. NaN in faces that --local left out.
 std::vector<double> at_given_corners(const Input& input, const std::vector<Vec2>& at);
 
-/// Some faces of a surface, with or without texture coordinates, as a part of a textured mesh.
+/// A part of a textured mesh: some faces of a surface, with or without texture coordinates.
 class FacesPart {
  public:
-  /// @param keep         whether to take face f
-  /// @param coordinates  of all corners of the faces, or empty
+  /// @param keep         keep(f): whether the part contains face f
+  /// @param coordinates  two texture coordinates per corner of all faces, or empty
   template <class Keep>
   FacesPart(const SurfaceFaces& faces, const Keep& keep, const std::vector<double>& coordinates = {}) : faces_(faces) {
     for (std::size_t f = 0; f + 1 < faces.begin.size(); ++f) {
@@ -68,11 +69,11 @@ class FacesPart {
   std::vector<double> coordinates_;
 };
 
-/// The surface and, above it, the decal with its texture.
+/// The surface, and above it the decal with its texture.
 class DecalMesh {
  public:
-  /// @param faces  of the surface; none: the decal alone
-  /// @param decal, image  must outlive it
+  /// @param faces         faces of the surface; none: only the decal
+  /// @param decal, image  must outlive the mesh
   DecalMesh(SurfaceFaces faces, const Decal& decal, const Image& image);
   DecalMesh(const DecalMesh&) = delete;
   const std::vector<io::MeshPart>& parts() const { return parts_; }
@@ -86,12 +87,12 @@ class DecalMesh {
 
 using Colors = std::vector<std::array<std::uint8_t, 3>>;
 
-/// The colors of the input, light gray where there are none, under the image. Points that --voxel replaced are colored as the
-/// nearest one kept.
+/// The colors of the input (light gray if it has none), covered by the image. Points that --voxel replaced get the color of the
+/// nearest kept point.
 /// @param places  `image_coordinates_of_vertices`
 Colors painted(const Input& input, const std::vector<double>& places, const Image& image);
 
-/// The points with these colors. All has to outlive the table.
+/// A table of the points with these colors. All arguments must outlive the table.
 io::Table painted_table(const Input& input, const Colors& colors);
 
 }  // namespace ahm::app

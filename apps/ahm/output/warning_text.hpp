@@ -8,7 +8,7 @@
 
 namespace ahm::app {
 
-/// A sentence.
+/// The text of a warning.
 std::string worded(const Warning& warning);
 
 }  // namespace ahm::app

@@ -15,41 +15,42 @@ struct Advice {
 };
 
 constexpr std::string_view join_points =
-    "points nearly on top of each other do this: --voxel (clouds) or --weld (meshes) joins them";
+    "the cause may be points that nearly coincide: join them with --voxel (clouds) or --weld (meshes)";
 
 constexpr Advice advices[] = {
-    {"unknown_bytes", "name it with --input-format"},
-    {"unknown_type", "if it is one of them, name it with --input-format"},
-    {"duplicate_faces", "drop them with --drop-duplicates, or mend all there is with --repair"},
-    {"repeated_vertices", "drop them with --drop-degenerate, or mend all there is with --repair"},
-    {"small_faces", "drop them with --drop-degenerate, or mend all there is with --repair"},
-    {"not_finite", "drop its faces with --drop-degenerate, or mend all there is with --repair"},
-    {"non_manifold_edges", "cut the mesh there with --non-manifold split, or mend all there is with --repair"},
-    {"non_manifold_vertices", "split them with --non-manifold split, or mend all there is with --repair"},
-    {"diffusion_time_range", "give a --t-coef near 1"},
-    {"heat_lost", "give a smaller --t-coef"},
+    {"unknown_bytes", "set the format with --input-format"},
+    {"unknown_type", "if it is one of these formats, set it with --input-format"},
+    {"duplicate_faces", "drop them with --drop-duplicates, or repair the mesh with --repair"},
+    {"repeated_vertices", "drop them with --drop-degenerate, or repair the mesh with --repair"},
+    {"small_faces", "drop them with --drop-degenerate, or repair the mesh with --repair"},
+    {"not_finite", "drop its faces with --drop-degenerate, or repair the mesh with --repair"},
+    {"non_manifold_edges", "cut the mesh there with --non-manifold split, or repair it with --repair"},
+    {"non_manifold_vertices", "split them with --non-manifold split, or repair the mesh with --repair"},
+    {"diffusion_time_range", "use a --t-coef near 1"},
+    {"heat_lost", "use a smaller --t-coef"},
     {"not_positive_definite", join_points},
     {"ill_conditioned", join_points},
     {"twisted_faces", "use --discretization polygons"},
     {"collinear_faces", "remove them, or use --method heat"},
     {"no_flat_triangles", "use --method heat"},
     {"windows_without_end", "repair the mesh, or use --method heat"},
-    {"windows_lost", "repair the needles there, or use --tolerance 1e-9 or --method heat"},
+    {"windows_lost", "repair the thin triangles there, or use --tolerance 1e-9 or --method heat"},
     {"polygons_not_refined", "use --discretization refined, or --method heat"},
     {"polygons_too_large", "use --discretization refined"},
-    {"no_bending_direction", "give the axis as X,Y,Z"},
-    {"row_left_out", "--voxel, --outliers, --drop-nan or --local removed it; choose another one, or write x,y,z"},
+    {"no_bending_direction", "write the axis as X,Y,Z"},
+    {"row_left_out", "--voxel, --outliers, --drop-nan or --local removed it; choose another row, or write x,y,z"},
 };
 
-/// Errors are written for many; of one, its noun and its verb have another form.
+/// Puts an error that begins with "1 " into the singular: the first noun and the first verb after it. Libraries write errors in the
+/// plural.
 std::string of_one(std::string text) {
   if (!text.starts_with("1 ")) return text;
   using Forms = std::pair<std::string_view, std::string_view>;
   constexpr Forms nouns[] = {{" vertices ", " vertex "}, {" faces ", " face "}, {" edges ", " edge "},
                              {" points ", " point "},    {" lines ", " line "}, {" statements ", " statement "},
-                             {" sets ", " set "},        {" pairs ", " pair "}, {" neighbours ", " neighbour "}};
+                             {" sets ", " set "},        {" pairs ", " pair "}, {" neighbors ", " neighbor "}};
   constexpr Forms verbs[] = {{" are ", " is "},     {" were ", " was "},    {" have ", " has "},
-                             {" use ", " uses "},   {" join ", " joins "},  {" say ", " says "},
+                             {" use ", " uses "},   {" join ", " joins "},  {" contain ", " contains "},
                              {" form ", " forms "}, {" point ", " points "}};
   const auto change_first = [&](std::span<const Forms> forms, std::size_t from) {
     std::size_t first = std::string::npos;

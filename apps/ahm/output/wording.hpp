@@ -1,5 +1,5 @@
 /// \file
-/// What the libraries report as data, in the program's words.
+/// Converts errors, counts and reports of the libraries to text and JSON.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -12,13 +12,13 @@
 
 namespace ahm::app {
 
-/// "1 point", "3 points".
+/// A count with its noun: "1 point", "3 points". @param noun  singular; its plural ends in s
 std::string counted(std::size_t count, std::string_view noun);
 
-/// An error's message, with the options of the program as its remedy where the libraries name one of their own.
+/// The message of an error. The program's options replace the remedy of the library, which names arguments of its functions.
 std::string worded(const Error& error);
 
-/// "group.name" becomes an entry of an object.
+/// A report as JSON; an id "group.name" becomes the entry `name` of the object `group`.
 nlohmann::ordered_json as_json(const Report& report);
 
 }  // namespace ahm::app

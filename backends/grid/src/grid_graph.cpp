@@ -12,7 +12,7 @@
 namespace ahm::grid {
 namespace {
 
-/// Checks everything but the number of vertices, and fills in the origin.
+/// Checks everything except the number of vertices, and sets a missing origin to zero.
 Grid checked(Grid grid) {
   const std::size_t d = grid.shape.size();
   if (d != 2 && d != 3) throw InvalidGeometry("the grid has " + std::to_string(d) + " axes; it must have 2 or 3");
@@ -22,7 +22,7 @@ Grid checked(Grid grid) {
   for (std::size_t a = 0; a < d; ++a) {
     const std::string axis = "axis " + std::to_string(a) + ": ";
     if (grid.shape[a] < 2)
-      throw InvalidGeometry(axis + std::to_string(grid.shape[a]) + " vertices; a grid needs at least 2");
+      throw InvalidGeometry(axis + std::to_string(grid.shape[a]) + " is too few vertices; a grid needs at least 2");
     if (!(grid.spacing[a] > 0) || !std::isfinite(grid.spacing[a] * grid.shape[a]) || !std::isfinite(grid.origin[a]))
       throw InvalidGeometry(axis + "spacing " + detail::number(grid.spacing[a]) + " or origin " +
                             detail::number(grid.origin[a]) + " is not finite or not in range");
@@ -62,11 +62,11 @@ GridGraph::GridGraph(Grid grid) : grid_(checked(std::move(grid))), dimension_(st
   mean_edge_length_ /= static_cast<double>(edge_count_);
 }
 
-/// Bit c of `free_cells` is the cell on the upper side of axis a where bit a of c is set, on the lower side elsewhere.
-/// Each free cell adds its share of the dual faces and volume.
+/// Bit c of `free_cells` is the cell on the upper side of axis a if bit a of c is set, and on the lower side otherwise. Each
+/// free cell adds its share of the dual faces and of the volume.
 GridGraph::Pattern GridGraph::make_pattern(std::size_t free_cells) const {
   const std::size_t cells = std::size_t{1} << dimension_;
-  double share = 1;  // of a cell's volume, per corner
+  double share = 1;  // volume of a cell, per corner
   for (double h : grid_.spacing) share *= h / length_unit_ / 2;
   Pattern pattern;
   // A vertex inside an obstacle has no edges, but a mass must be positive.
@@ -92,7 +92,7 @@ std::vector<Offset> GridGraph::count_patterns() const {
     for (Index i = 0; i < size_; ++i) ++count[pattern_at(i)];
     return count;
   }
-  // Without obstacles all that counts is where along each axis a vertex lies: first, inside or last.
+  // Without obstacles a pattern depends only on the position along each axis: first, inside or last.
   for (int where = 0; where < (dimension_ == 2 ? 9 : 27); ++where) {
     Steps at{};
     Offset times = 1;
@@ -170,7 +170,7 @@ Source GridGraph::source_at(std::span<const double> point) const {
   if (point.size() != grid_.shape.size())
     throw InvalidArgument("'point' must be " + std::to_string(dimension_) + " numbers");
   Steps cell{};
-  Vec3 share{};  // of the way through the cell
+  Vec3 share{};  // position in the cell, 0 to 1 along each axis
   for (int a = 0; a < dimension_; ++a) {
     double steps = (point[a] - grid_.origin[a]) / grid_.spacing[a];
     if (std::abs(steps - std::round(steps)) < 1e-9) steps = std::round(steps);
@@ -180,7 +180,7 @@ Source GridGraph::source_at(std::span<const double> point) const {
     cell[a] = std::min(static_cast<Index>(steps), grid_.shape[a] - 2);
     share[a] = steps - cell[a];
   }
-  // A point between cells belongs to the free ones.
+  // A point between cells belongs to a free one.
   for (int lower = 0; lower < 1 << dimension_; ++lower) {
     Steps other = cell;
     Vec3 share_of_other = share;
@@ -196,7 +196,7 @@ Source GridGraph::source_at(std::span<const double> point) const {
   throw InvalidArgument("'point' lies inside an obstacle");
 }
 
-/// b_k multilinear, z_k = vertex - point: their weighted mean is 0.
+/// Weights b_k are multilinear, and z_k = vertex - point; the weighted mean of z_k is 0.
 Source GridGraph::source_in_cell(const Steps& cell, const Vec3& share, std::span<const double> point) const {
   const auto d = static_cast<std::size_t>(dimension_);
   const std::array<double, 9> identity2{1, 0, 0, 1}, identity3{1, 0, 0, 0, 1, 0, 0, 0, 1};

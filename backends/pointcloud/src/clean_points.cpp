@@ -57,8 +57,8 @@ int highest_difference(double a, double b) {
   return std::max(e, 1) - std::countl_zero((x ^ y) << (64 - digits)) - 1;
 }
 
-/// Leading digits of positions on the Morton curve, as integers. If they differ for two points, the point with the lower integer is
-/// `before_on_curve`.
+/// Leading digits of positions on the Morton curve, as integers. If they differ for two points, the point with the lower
+/// integer is `before_on_curve`.
 class CurvePlaces {
  public:
   explicit CurvePlaces(std::span<const Vec3> points) {

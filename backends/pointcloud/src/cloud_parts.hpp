@@ -28,7 +28,7 @@ struct CloudParts {
 /// One number for each part, or one number for all points.
 class PerPart {
  public:
-  PerPart(double of_all = 0) : values_{of_all} {}  // NOLINT(google-explicit-constructor): tiles use one number for all points
+  PerPart(double of_all = 0) : values_{of_all} {}  // NOLINT(google-explicit-constructor): tiles use one value
   /// @param part_of_point  must outlive this object
   PerPart(std::span<const Index> part_of_point, std::vector<double> values)
       : part_(part_of_point), values_(std::move(values)) {}

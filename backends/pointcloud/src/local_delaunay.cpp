@@ -49,8 +49,9 @@ void convex_hull(std::vector<Inverted>& points, std::vector<Inverted>& hull) {
   hull.pop_back();
 }
 
-/// Removes images near the origin that lie inside a polygon of some of the first images, because they are no corners of the hull. The
-/// nearest neighbors come first and have the farthest images, so most images are removed where neighbors lie on all sides.
+/// Removes images near the origin that lie inside a polygon of some of the first images, because they are no corners of the
+/// hull. The nearest neighbors come first and have the farthest images, so most images are removed where neighbors lie on all
+/// sides.
 /// @return whether such a polygon exists; the origin is then no corner of the hull, either
 bool drop_inner(std::vector<Inverted>& points) {
   constexpr std::size_t looked_at = 12, directions = 8;
@@ -79,9 +80,10 @@ bool drop_inner(std::vector<Inverted>& points) {
   return true;
 }
 
-/// Computes the Delaunay triangles at one point. Inversion about the point maps circles through it to lines. A circle through the point
-/// and two neighbors is empty exactly if all other images, and the origin, lie on one side of the line through their two images. The
-/// triangles are therefore the edges of the convex hull of the images and the origin that do not touch the origin.
+/// Computes the Delaunay triangles at one point. Inversion about the point maps circles through it to lines. A circle through
+/// the point and two neighbors is empty exactly if all other images, and the origin, lie on one side of the line through their
+/// two images. The triangles are therefore the edges of the convex hull of the images and the origin that do not touch the
+/// origin.
 class StarTriangulator {
  public:
   StarTriangulator(const CleanPoints& cloud, const Neighborhoods& neighborhoods, const TangentPlanes& planes,
@@ -95,7 +97,8 @@ class StarTriangulator {
 
   Offset too_long = 0, other_sheet = 0, too_steep = 0;
 
-  /// @return whether the triangles surround the point
+  /// Appends the triangles at point i.
+  /// @return whether they surround the point
   bool triangulate(Index i, std::vector<Triangle>& out) {
     images_.clear();
     const PlaneAxes axes(planes_.normals[i]);
@@ -151,7 +154,7 @@ void count_equal(const std::array<Index, 2>* values, Offset first, Offset last, 
   }
 }
 
-/// Sorts triangles and removes duplicates. Sorts into buckets by the smallest corner first.
+/// Sorts triangles, with buckets by the smallest corner, and removes duplicates.
 /// @param votes  output, may be null: how often each triangle occurred
 std::vector<Triangle> unique_triangles(const std::vector<std::vector<Triangle>>& parts, Index n, unsigned threads,
                                        std::vector<std::uint8_t>* votes) {

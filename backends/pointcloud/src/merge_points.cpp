@@ -11,8 +11,8 @@ namespace {
 
 /// Points nearer to each other than this fraction of the spacing are always merged.
 constexpr double equal_share = 1e-3;
-/// Points nearer than this fraction of the spacing are merged only if more than `most_by_chance` of all points have such a neighbor. Of
-/// randomly sampled points 0.4 % have one.
+/// Points nearer than this fraction of the spacing are merged only if more than `most_by_chance` of all points have such a
+/// neighbor. Of randomly sampled points 0.4 % have one.
 constexpr double near_share = 0.05, most_by_chance = 0.01;
 
 struct Representatives {

@@ -22,11 +22,12 @@ namespace {
 
 constexpr Index nearest_few = 6;  ///< neighbors per point used to measure noise
 
-/// Standard deviation of a normal distribution, divided by the median of its absolute value. And standard deviation of offsets between
-/// normally distributed points, divided by the median of the largest of six offsets.
+/// Standard deviation of a normal distribution, divided by the median of its absolute value. And standard deviation of offsets
+/// between normally distributed points, divided by the median of the largest of six offsets.
 constexpr double deviation_of_median = 1 / 0.6744897501960817, deviation_of_largest = 1 / 1.449;
 
-/// Median of the mean squared offset of six normally distributed points from a seventh, divided by its expectation (by simulation).
+/// Median of the mean squared offset of six normally distributed points from a seventh, divided by its expectation (by
+/// simulation).
 constexpr double median_of_mean_square = 0.745;
 
 /// Offsets up to this fraction of the neighborhood radius are rounding errors.
@@ -34,8 +35,8 @@ constexpr double least_offset = 1e-6;
 /// Criteria for layers. Nearly all points have neighbors in another layer. Few offsets lie between these fractions of the largest
 /// offset at their point; with normal noise every second one does.
 constexpr double layered_points = 0.9, between_from = 0.25, between_to = 0.75, between_layers = 0.25;
-/// Layers have a constant distance: at most points the largest offset differs from the median by at most this fraction. On lattices over
-/// bends, points have neighbors both across the bend and along it, and offsets have any size.
+/// Layers have a constant distance: the largest offsets of most points agree with their median to this fraction. On lattices
+/// over bends, points have neighbors both across the bend and along it, and offsets have any size.
 constexpr double alike_by = 0.25, alike_in_layers = 0.8;
 
 /// Absolute offsets of the `nearest_few` neighbors of each point across their mean planes; -1: no plane.
@@ -221,18 +222,20 @@ NoisyPlanes find_noisy_planes(CleanPoints& cloud, std::span<const Vec3> normals,
 
 namespace {
 
-/// A part is noisy if the standard deviation of its neighbors' offsets exceeds this fraction of the spacing. Both ends of an offset are
-/// noisy, so each point is then off by 0.085 spacings. Vertices of clean meshes of real shapes have 0.02 to 0.09, of a finely carved one
-/// 0.13.
+/// A part is noisy if the standard deviation of its neighbors' offsets exceeds this fraction of the spacing. Both ends of an
+/// offset are noisy, so each point then deviates by 0.085 spacings. Vertices of clean meshes of real shapes have 0.02 to 0.09,
+/// of a finely carved one 0.13.
 constexpr double noisy_share = 0.12;
-/// Neighborhoods in noisy parts are smoothed above this lower fraction, because points at rest next to moved ones would make a step.
+/// Neighborhoods in noisy parts are smoothed above this lower fraction, because points at rest next to moved ones would make a
+/// step.
 constexpr double quiet_share = 0.06;
 
 /// A quadric has six coefficients; points with fewer neighbors than this are not smoothed.
 constexpr std::size_t least_fitted = 10;
 
-/// Test for volumes: at this many points of a part, both the neighborhood and one `wider_by` times as large must be as thick as wide. This
-/// holds at 85 % of the points at most on surfaces with noise of a whole spacing, and at all points in volumes of seven spacings or more.
+/// Test for volumes: at this many points of a part, both the neighborhood and one `wider_by` times as large must be as thick as
+/// wide. This holds at 85 % of the points at most on surfaces with noise of a whole spacing, and at all points in volumes of
+/// seven spacings or more.
 constexpr std::size_t samples = 256;
 constexpr Index wider_by = 4;
 constexpr double thick_in_volumes = 0.95;
@@ -246,7 +249,8 @@ class QuadricFit {
   QuadricFit(const CleanPoints& cloud, const TangentPlanes& planes)
       : cloud_(cloud), planes_(planes), has_sides_(planes.estimated < static_cast<Index>(cloud.points.size())) {}
 
-  /// Height of the fitted surface over point i along its normal. None if too few neighbors lie in its sheet or the surface is too far.
+  /// Height of the fitted surface over point i along its normal. None if too few neighbors lie in its sheet or the surface is
+  /// too far.
   /// @param noise  standard deviation of neighbors' offsets
   std::optional<double> height(Index i, std::span<const Index> neighbors, double radius, double noise) const {
     const Vec3& normal = planes_.normals[i];
@@ -301,7 +305,8 @@ void find_within(const CleanPoints& cloud, Index i, double radius, const Neighbo
   std::erase(found, i);
 }
 
-/// Whether almost all neighborhoods, both narrow and wide ones, are as thick as wide. The points then fill a volume, which is not noise.
+/// Whether almost all neighborhoods, both narrow and wide ones, are as thick as wide. The points then fill a volume, which is
+/// not noise.
 bool is_volume(const CleanPoints& cloud, const Neighborhoods& neighborhoods, std::span<const Index> points,
                const NeighborSearch& search) {
   std::vector<Index> wide(std::min(static_cast<std::size_t>(wider_by * neighborhoods.k), cloud.points.size()));

@@ -47,8 +47,9 @@ NeighborOffsets neighbor_offsets(const CleanPoints& cloud, const Neighborhoods& 
 
 /// Computes the noise from the median of all offsets, which corners and other sheets do not affect.
 ///
-/// Points may also lie in layers at a constant distance that are nearer than neighbors, such as two scans or the sides of a thin plate.
-/// That median is then an offset either within a layer or between two, by chance. In this case the largest offset of each point is used.
+/// Points may also lie in layers at a constant distance that are nearer than neighbors, such as two scans or the sides of a
+/// thin plate. That median is then an offset either within a layer or between two, by chance. In this case the largest offset
+/// of each point is used.
 /// @param all, largest  medians of the offsets; 0: no offsets
 Noise noise_of(const OffsetCounts& counts, double all, double largest);
 
@@ -60,8 +61,8 @@ std::vector<Noise> offset_noise(const CleanPoints& cloud, const Neighborhoods& n
                                 const TangentPlanes& planes, const std::vector<std::vector<Index>>& parts,
                                 unsigned threads);
 
-/// Standard deviation of the offsets around each point, in units of the clean points: the median over its neighborhood, which a crease or
-/// another sheet nearby does not affect.
+/// Standard deviation of the offsets around each point, in units of the clean points: the median over its neighborhood, which a
+/// crease or another sheet nearby does not affect.
 std::vector<double> neighborhood_noise(const CleanPoints& cloud, const Neighborhoods& neighborhoods,
                                        const TangentPlanes& planes, unsigned threads);
 
@@ -75,23 +76,23 @@ struct NoisyPlanes {
   std::unique_ptr<const CloudParts> parts;
   PerPart noise;        ///< standard deviation for each part
   Noise typical_noise;  ///< noise of the largest part, before smoothing
-  Index merged = 0;     ///< points merged into a near one
+  Index merged = 0;     ///< number of points merged into another one
 };
 
-/// Finds neighbors and tangent planes of distinct points. Merges near points, smooths noisy parts, and repeats the search until no part is
-/// noisy or no point moves, at most five times. A radius in `CloudOptions::smooth` smooths once.
+/// Finds neighbors and tangent planes of distinct points. Merges near points, smooths noisy parts, and repeats the search until
+/// no part is noisy or no point moves, at most five times. A radius in `CloudOptions::smooth` smooths once.
 /// @param cloud, search  changed if points are merged or moved
 NoisyPlanes find_noisy_planes(CleanPoints& cloud, std::span<const Vec3> normals,
                               std::unique_ptr<NeighborSearch>& search, const CloudOptions& options);
 
-/// Marks the parts that are noisy surfaces: the standard deviation of neighbors' offsets exceeds a fraction of the spacing. A radius in
-/// `CloudOptions::smooth` marks all parts, and 0 marks none.
+/// Marks the parts that are noisy surfaces: the standard deviation of neighbors' offsets exceeds a fraction of the spacing. A
+/// radius in `CloudOptions::smooth` marks all parts, and 0 marks none.
 std::vector<char> find_noisy_parts(const CleanPoints& cloud, const NoisyPlanes& planes, const NeighborSearch& search,
                                    const CloudOptions& options);
 
-/// Moves points of noisy parts along the normals of their planes, and marks them in `cloud.smoothed`. Moves the points where the noise of
-/// the neighborhood is large, or all points with a radius in `CloudOptions::smooth`. The fit ignores neighbors in other sheets. A point
-/// stays in place if too few neighbors remain or the quadric is too far away.
+/// Moves points of noisy parts along the normals of their planes, and marks them in `cloud.smoothed`. Moves the points where
+/// the noise of the neighborhood is large, or all points with a radius in `CloudOptions::smooth`. The fit ignores neighbors in
+/// other sheets. A point stays in place if too few neighbors remain or the quadric is too far away.
 /// @param planes  planes of the current points
 /// @return whether a point moved
 bool smooth_points(CleanPoints& cloud, const NoisyPlanes& planes, const std::vector<char>& noisy_parts,

@@ -36,8 +36,8 @@ std::vector<Bridge> bridges(const WeightedEdges& edges, const TangentPlanes& pla
   return result;
 }
 
-/// Spanning forest of the flattest edges, by Boruvka's algorithm: each tree takes the flattest edge that leaves it, until no edge leaves
-/// a tree. Of equally flat edges it takes the first.
+/// Spanning forest of the flattest edges, by Boruvka's algorithm: each tree takes the flattest edge that leaves it, until no
+/// edge leaves a tree. Of equally flat edges it takes the first.
 SignedForest flattest_forest(Index n, std::vector<Bridge> bridges) {
   SignedForest forest(n);
   constexpr auto none = static_cast<std::size_t>(-1);
@@ -62,13 +62,14 @@ SignedForest flattest_forest(Index n, std::vector<Bridge> bridges) {
   return forest;
 }
 
-/// A spanning forest if the signs agree around every loop of edges: the signs relative to the roots are then the same in all spanning
-/// forests. None if a loop disagrees. Grows trees within several ranges of points in parallel, then adds the edges between ranges.
+/// A spanning forest if the signs agree around every loop of edges: the signs relative to the roots are then the same in all
+/// spanning forests. None if a loop disagrees. Grows trees within several ranges of points in parallel, then adds the edges
+/// between ranges.
 std::optional<SignedForest> undisputed_forest(Index n, const WeightedEdges& edges, const TangentPlanes& planes,
                                               unsigned threads) {
   SignedForest forest(n);
   std::atomic<bool> disputed{false};
-  std::vector<char> is_between(edges.tails.size(), 0);  // two ranges
+  std::vector<char> is_between(edges.tails.size(), 0);  // whether an edge joins two ranges
   const auto join = [&](Index a, Index b) {
     const signed char sign = relative_sign(planes.normals[a], planes.normals[b]);
     if (!forest.join(a, b, sign) && forest.find(a).sign * forest.find(b).sign != sign) disputed = true;

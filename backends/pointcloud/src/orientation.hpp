@@ -11,9 +11,9 @@
 
 namespace ahm::pointcloud {
 
-/// For each part, whether neighbors with opposed normals are the two sheets of thin walls: they lie consistently behind, or in front of,
-/// each other. Normals with wrong signs, or turned to a viewpoint, show no such pattern. Curvature affects both points of a pair in opposite
-/// directions, and noise has no direction.
+/// For each part, whether neighbors with opposed normals are the two sheets of thin walls: they lie consistently behind, or in
+/// front of, each other. Normals with wrong signs, or turned to a viewpoint, show no such pattern. Curvature affects both
+/// points of a pair in opposite directions, and noise has no direction.
 std::vector<char> have_thin_walls(const CleanPoints& cloud, const TangentPlanes& planes,
                                   const Neighborhoods& neighborhoods, const CloudParts& parts);
 
@@ -59,9 +59,9 @@ struct Evidence {
   double sign(bool signs_given) const;
 };
 
-/// Flips normals so that they agree along a spanning tree of the flattest edges [HDDMS92], per connected component. A component as a
-/// whole keeps the majority of its input signs. Without them, its normals point away from its centroid or, on flat clouds, along the
-/// positive direction of their largest coordinate.
+/// Flips normals so that they agree along a spanning tree of the flattest edges [HDDMS92], per connected component. A component
+/// as a whole keeps the majority of its input signs. Without them, its normals point away from its centroid. On flat clouds the
+/// largest coordinate of their sum is positive.
 /// @param kept  parts with normals that do not change
 /// @return for each part, the number of normals flipped against the majority of their component
 std::vector<Index> orient_normals(const CleanPoints& cloud, const WeightedEdges& edges, bool signs_given,

@@ -28,15 +28,16 @@
 namespace ahm::pointcloud {
 namespace {
 
-/// A cloud with more than this share of its points in neighbourhoods as thick as wide is no surface.
+/// A cloud is not a surface if more than this fraction of its points has neighborhoods as thick as wide.
 constexpr double thick_share = 0.15;
-/// Beyond this share of the mean edge length the noise of offsets, that of points times the root of 2, makes vectors of polar maps
-/// worse than those of heat in the median (docs/concepts/accuracy.md).
+/// Above this fraction of the mean edge length, the noise of offsets makes the median vector of polar maps less accurate than
+/// that of heat maps (docs/concepts/accuracy.md). Offsets have sqrt(2) times the noise of the points.
 constexpr double noise_for_heat = 0.5;
-/// Local triangulations of surfaces agree in 0.87 of their triangles and more; those of foliage, scanned buildings and sheets one spacing
-/// apart in 0.48 to 0.77.
+/// Local triangulations agree in at least 0.87 of their triangles on surfaces, and in 0.48 to 0.77 on foliage, scanned
+/// buildings and sheets one spacing apart.
 constexpr double least_agreement = 0.8;
-/// Coordinates in steps of more than this share of the mean edge length hide the surface.
+/// Coordinate steps above `coarse_step` times the mean edge length hide the surface. Steps above `grid_step` times it also
+/// occur on regular grids.
 constexpr double coarse_step = 0.1, grid_step = 0.4;
 
 void check_arguments(std::span<const Vec3> points, const CloudOptions& options) {
@@ -50,7 +51,7 @@ void check_arguments(std::span<const Vec3> points, const CloudOptions& options) 
                           "; it must be at least 1 (default 3)");
   if (options.smooth && !(*options.smooth >= 0 && std::isfinite(*options.smooth)))
     throw InvalidArgument("smooth is " + detail::number(*options.smooth) +
-                          "; give a radius in world units, 0 for none, or nothing for an automatic choice");
+                          "; give a radius in world units, 0 for none, or leave it unset for an automatic choice");
 }
 
 /// The points to build from, and their rows in the input.
@@ -98,7 +99,7 @@ std::string first_ten(const std::vector<Row>& rows) {
   return list.text();
 }
 
-/// The parts in which neighbours whose normals are opposed are kept apart.
+/// Marks the parts in which neighbors with opposed normals are not joined.
 std::vector<char> cut_between_sheets(std::span<const Vec3> given, const CleanPoints& cloud, const TangentPlanes& planes,
                                      const Neighborhoods& neighborhoods, const CloudParts& parts,
                                      const CloudOptions& options) {
@@ -112,7 +113,7 @@ PerPart per_part(const CloudParts& parts, const std::vector<char>& marks) {
   return {parts.of_point, std::vector<double>(marks.begin(), marks.end())};
 }
 
-/// Points of parts, beyond the smallest, that have no inner point.
+/// Number of points in parts of more than `default_neighbors` points that have no interior point.
 Index points_on_lines(const CloudParts& parts, const std::vector<char>& inner) {
   std::vector<Index> sizes(static_cast<std::size_t>(parts.count), 0);
   std::vector<char> has_inner(sizes.size(), 0);
@@ -126,8 +127,8 @@ Index points_on_lines(const CloudParts& parts, const std::vector<char>& inner) {
   return points;
 }
 
-/// Makes the signs of the normals consistent, except in parts that are cut, where the given ones are kept.
-/// @return the parts whose given signs are right everywhere
+/// Makes the signs of the normals consistent. Parts that are cut keep their input signs.
+/// @return marks of the parts with correct input signs everywhere
 std::vector<char> orient(const CleanPoints& cloud, const WeightedEdges& edges, std::span<const Vec3> given,
                          const CloudParts& parts, const std::vector<char>& cut, const CloudOptions& options,
                          TangentPlanes& planes, CloudDetails& report) {
@@ -143,7 +144,7 @@ std::vector<char> orient(const CleanPoints& cloud, const WeightedEdges& edges, s
   return trusted;
 }
 
-/// The nearest neighbor that has a mass, if smoothing took it or the point for noisy; -1: none.
+/// The nearest neighbor that has a mass, if it or the point was smoothed; -1: none.
 Index smoothed_neighbor(const CleanPoints& cloud, Index point, const WeightedEdges& edges,
                         const NeighborSearch& search) {
   if (cloud.smoothed.empty()) return -1;
@@ -154,8 +155,8 @@ Index smoothed_neighbor(const CleanPoints& cloud, Index point, const WeightedEdg
   return found != near.end() && (cloud.smoothed[point] || cloud.smoothed[*found]) ? *found : -1;
 }
 
-/// Numbers the points that have a mass; lists the rows of points that have none. A smoothed point without one shares the vertex of
-/// its neighbor.
+/// Numbers the points that have a mass, and lists the rows of the other points. A smoothed point without a mass shares the
+/// vertex of its neighbor.
 std::vector<Index> number_vertices(const CleanPoints& cloud, const WeightedEdges& edges, const NeighborSearch& search,
                                    const KeptPoints& kept, CloudDetails& report) {
   std::vector<Index> vertex_of_clean(cloud.points.size(), -1);
@@ -194,8 +195,8 @@ void fill_vertex_data(CsrGraphData& g, const CleanPoints& cloud, const TangentPl
   });
 }
 
-/// The step of single precision at the largest coordinates, if all are such numbers and some of the largest are odd multiples of it;
-/// else 0.
+/// The rounding step of single precision at the largest coordinates, if all coordinates are single-precision numbers and some
+/// of the largest are odd multiples of the step; otherwise 0.
 double single_precision_step(std::span<const Vec3> points) {
   float farthest = 0;
   for (const Vec3& p : points)
@@ -210,13 +211,13 @@ double single_precision_step(std::span<const Vec3> points) {
   return std::ranges::any_of(points, [&](const Vec3& p) { return std::ranges::any_of(p, is_rounded); }) ? step : 0;
 }
 
-/// The share of the triangles that are in the local triangulations of all three corners; 1 where there are none.
+/// Fraction of the triangles found in the local triangulations of all three corners; 1 if there are no triangles.
 double agreement(const LocalTriangles& local) {
   const auto shared = std::ranges::count(local.votes, 3);
   return local.votes.empty() ? 1 : static_cast<double>(shared) / static_cast<double>(local.votes.size());
 }
 
-/// Numbers the corners of triangles as vertices; all of them have masses.
+/// Replaces clean points by vertices as corners of triangles. All corners have masses.
 void number_corners(std::vector<Triangle>& triangles, const std::vector<Index>& vertex_of_clean) {
   for (Triangle& t : triangles)
     for (Index& corner : t) corner = vertex_of_clean[corner];
@@ -224,10 +225,10 @@ void number_corners(std::vector<Triangle>& triangles, const std::vector<Index>& 
 
 }  // namespace
 
-/// The triangles of `flat_approximation`, of vertices.
+/// The triangles of `flat_approximation`; their corners are vertices.
 struct PointCloudSurface::Sheet {
   std::once_flag once;
-  LocalTriangles candidates;  ///< empty once they were chosen from
+  LocalTriangles candidates;  ///< empty after the choice
   std::vector<Triangle> triangles;
 };
 
@@ -259,7 +260,7 @@ PointCloudSurface PointCloudSurface::build(std::span<const Vec3> input, std::spa
   CleanPoints cloud = clean_points(
       points, [&](std::size_t i) { return kept.row(i).index; }, options, details);
   auto search = options.search ? options.search(cloud.points) : nullptr;
-  if (!search) throw InvalidArgument("options.search made no neighbour search; default: nanoflann_search");
+  if (!search) throw InvalidArgument("options.search returned no neighbor search; use nanoflann_search, the default");
   options.progress.step("neighbours", 0.0);
   details.k_asked = options.k.value_or(default_neighbors);
   auto [neighborhoods, planes, parts, noise, typical_noise, merged] =
@@ -345,7 +346,7 @@ FlatTriangles PointCloudSurface::flat_approximation() const {
 Surface::Reason PointCloudSurface::missing_vertex_reason(Row row) const {
   if (kept_ && !std::binary_search(kept_->begin(), kept_->end(), row))
     return {"row_left_out", "was left out", "it is not among CloudOptions::rows"};
-  return {"row_removed", "was removed: it is not finite, or has no tangent plane or no neighbours",
+  return {"row_removed", "was removed: it is not finite, or has no tangent plane or no neighbors",
           "choose another one"};
 }
 
@@ -408,7 +409,7 @@ std::vector<Warning> PointCloudSurface::warnings() const {
   warn("duplicates", d.duplicates);
   warn("near_duplicates", d.near_duplicates);
   const double mean_edge = graph_->mean_edge_length() * graph_->length_unit();
-  // Grids may have such steps, too, but no duplicates.
+  // Regular grids may have such steps, too, but no duplicates.
   if (d.coordinate_step > coarse_step * mean_edge && (d.coordinate_step < grid_step * mean_edge || d.duplicates > 0))
     result.push_back({"coarse_coordinates", {d.coordinate_step, mean_edge}, {}});
   warn("thin_walls", d.rejected_normals);

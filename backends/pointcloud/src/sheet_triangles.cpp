@@ -17,13 +17,13 @@ namespace {
 
 using std::numbers::pi;
 
-/// Holes with more edges stay open: gaps in the sampling have longer boundaries.
+/// Holes with more edges stay open, because they are gaps in the sampling.
 constexpr std::size_t most_hole_edges = 12;
-/// A triangle flatter than this multiple of its longest side has no reliable angles.
+/// A triangle flatter than this fraction of its longest side has no reliable angles.
 constexpr double least_height = 1e-6;
-/// Of most vertices.
+/// Typical number of triangles at a vertex.
 constexpr std::size_t usual_degree = 8;
-/// Dropping a fan may open a hole; real shapes change no more after the second round.
+/// Dropping a fan may open a hole. On real shapes nothing changes after the second round.
 constexpr int fill_rounds = 3;
 
 /// The corner of a triangle at a vertex, in the tangent plane of the vertex: counter-clockwise from `right` to `left`.
@@ -42,12 +42,13 @@ bool overlap(const Wedge& a, const Wedge& b) {
   return counter_clockwise(a.begin, b.begin) < a.extent || counter_clockwise(b.begin, a.begin) < b.extent;
 }
 
-/// Triangles whose wedges at each vertex do not overlap. Then no edge has more than two triangles.
+/// A set of triangles with wedges that do not overlap at any vertex. No edge then has more than two triangles.
 class Sheet {
  public:
   explicit Sheet(std::span<const Frame> frames) : frames_(frames), wedges_(frames.size()) {}
 
-  /// Adds a triangle, if it overlaps no other.
+  /// Adds a triangle if it overlaps no other.
+  /// @return whether it was added
   bool add(const Triangle& t) {
     if (!has_one_side(t)) return false;
     std::array<Wedge, 3> corners;
@@ -67,7 +68,7 @@ class Sheet {
     return true;
   }
 
-  /// Triangulates the holes with few edges, ear by ear.
+  /// Triangulates holes with few edges by cutting ears.
   void fill_holes() {
     for (Index v = 0; v < vertex_count(); ++v) {
       std::vector<Index> starts;
@@ -78,7 +79,7 @@ class Sheet {
     }
   }
 
-  /// Keeps at each vertex the widest fan.
+  /// Keeps only the widest fan of triangles at each vertex.
   void drop_small_fans() {
     std::vector<Index> queue(wedges_.size());
     std::iota(queue.rbegin(), queue.rend(), 0);
@@ -93,8 +94,8 @@ class Sheet {
     }
   }
 
-  /// Splits a triangle in which a vertex without triangles lies.
-  /// @param near  vertices to look at
+  /// Splits the triangle that contains a vertex without triangles.
+  /// @param near  vertices with the triangles to search
   void insert(Index v, std::span<const Index> near) {
     std::vector<Index> around;
     for (const Index n : near)
@@ -124,7 +125,7 @@ class Sheet {
   }
 
  private:
-  /// Whether the corners agree, by their normals, on the side of the triangle that is up.
+  /// Whether the normals at the corners agree on the upper side of the triangle.
   bool has_one_side(const Triangle& t) const {
     const Vec3 a = frames_[t[1]].origin - frames_[t[0]].origin, b = frames_[t[2]].origin - frames_[t[0]].origin,
                normal = cross(a, b);
@@ -160,7 +161,7 @@ class Sheet {
     return false;
   }
 
-  /// The neighbor at the other end of the gap that begins at a boundary edge; -1: no boundary edge.
+  /// The neighbor at the other end of the gap that begins at a boundary edge; -1: not a boundary edge.
   Index across_gap(Index v, Index neighbor) const {
     const auto& at = wedges_[v];
     for (std::size_t k = 0; k < at.size(); ++k) {
@@ -172,7 +173,8 @@ class Sheet {
     return -1;
   }
 
-  /// The vertices around a hole, from its lowest on; empty where it is too long, touches itself or starts at another vertex.
+  /// The boundary loop of a hole, from its lowest vertex on. Empty if the loop is too long, touches itself or starts at another
+  /// vertex.
   std::vector<Index> hole(Index start, Index first) const {
     std::vector<Index> loop{start};
     const Index last = across_gap(start, first);
@@ -208,7 +210,7 @@ class Sheet {
     const auto& at = wedges_[v];
     std::size_t start = 0;
     while (start < at.size() && at[(start + at.size() - 1) % at.size()].left == at[start].right) ++start;
-    if (start == at.size()) return {};  // closed, or none
+    if (start == at.size()) return {};  // a closed fan, or no triangle
     std::vector<Index> fan, widest, others;
     double width = 0, most = 0;
     for (std::size_t k = 0; k < at.size(); ++k) {
@@ -233,7 +235,8 @@ class Sheet {
       std::erase_if(wedges_[corner], [&](const Wedge& w) { return w.triangle == triangle; });
   }
 
-  /// Whether a vertex lies in a triangle in its own tangent plane, and the triangle does not stand on it.
+  /// Whether a triangle, projected to the tangent plane of a vertex, contains the vertex. Triangles perpendicular to the plane
+  /// do not.
   bool is_inside(Index v, const Triangle& t) const {
     const Vec3& n = frames_[v].normal;
     const Vec3 a = frames_[t[0]].origin - frames_[v].origin, b = frames_[t[1]].origin - frames_[v].origin,
@@ -243,13 +246,13 @@ class Sheet {
   }
 
   std::span<const Frame> frames_;
-  std::vector<std::vector<Wedge>> wedges_;  ///< of each vertex, ascending angles
+  std::vector<std::vector<Wedge>> wedges_;  ///< per vertex, angles ascending
   std::vector<Triangle> triangles_;
   std::vector<char> dropped_;
 };
 
-/// Numbers of triangles, those with more votes first. Those of all three corners hardly ever overlap, so that their order, that of
-/// memory, does not matter; of the others smaller ones come first.
+/// Order in which triangles are added: more votes first. Triangles with three votes hardly ever overlap, so they stay in the
+/// order of memory. The others are sorted by size, smaller ones first.
 std::vector<Index> by_votes(std::span<const Frame> frames, const LocalTriangles& candidates) {
   struct Disputed {
     Index triangle;
@@ -274,7 +277,7 @@ std::vector<Index> by_votes(std::span<const Frame> frames, const LocalTriangles&
   return order;
 }
 
-/// Puts vertices that no triangle uses into the triangles they lie in.
+/// Inserts vertices that no triangle uses into the triangles that contain them.
 void insert_uncovered(const LocalTriangles& candidates, Sheet& sheet) {
   std::vector<std::vector<Index>> near(static_cast<std::size_t>(sheet.vertex_count()));
   for (const Triangle& t : candidates.triangles)
@@ -302,7 +305,7 @@ namespace {
 using exact::Corner;
 using exact::Half;
 
-/// Glued along their edges, as given counter-clockwise about the normals of their first corners.
+/// The triangles glued along their edges, oriented counter-clockwise about the normals of their first corners.
 detail::GluedMesh glued(std::span<const Frame> frames, std::span<const Triangle> triangles) {
   std::vector<Offset> begin{0};
   std::vector<Index> corners;
@@ -315,7 +318,7 @@ detail::GluedMesh glued(std::span<const Frame> frames, std::span<const Triangle>
   return {static_cast<Index>(frames.size()), {begin, corners}, NonManifold::error};
 }
 
-/// A triangle in its own plane.
+/// The sides of a triangle in its own plane.
 exact::FaceSides lay_out(std::span<const Index> tails, std::span<const Frame> frames, Index face) {
   const auto corner = [&](int s) { return frames[tails[3 * face + s]].origin; };
   const Vec3 a = corner(1) - corner(0), b = corner(2) - corner(0);
@@ -323,7 +326,7 @@ exact::FaceSides lay_out(std::span<const Index> tails, std::span<const Frame> fr
   return {Vec2{base, 0}, Vec2{along - base, height}, Vec2{-along, -height}};
 }
 
-/// With the vertices of the graph, of which a mesh has those alone that it uses.
+/// The polyhedral surface, with the vertices of the graph. The mesh contains only the vertices that it uses.
 exact::PolyhedralSurface surface_of(const detail::GluedMesh& mesh, std::span<const Frame> frames) {
   exact::HalfEdges edges = mesh.half_edges();
   const auto vertices = mesh.input_of_vertex();
@@ -335,7 +338,8 @@ exact::PolyhedralSurface surface_of(const detail::GluedMesh& mesh, std::span<con
   return {edges, [&](Index f) { return lay_out(tails, frames, f); }, corners};
 }
 
-/// Finds the angle of direction 0 in the frame of a vertex: the mean, over its edges, of what their angles differ by.
+/// Finds the angle of direction 0 in the frame of a vertex: the mean, over its edges, of the difference between their angles in
+/// the frame and on the polyhedral surface.
 void fit_direction(FlatTriangles& flat, std::span<const Frame> frames, Index v) {
   const Corner start = flat.surface.first_corner(v);
   if (start.half < 0) return;

@@ -15,16 +15,16 @@
 namespace ahm::pointcloud {
 namespace {
 
-/// What noise explains: offsets of fewer standard deviations. Of the rest of normal noise the share in squared lengths is
-/// below a percent, so that noisy planes keep their distances.
+/// Offsets of fewer standard deviations are noise. Larger offsets contribute less than 1 % of the squared lengths under normal
+/// noise, so noisy planes keep their distances.
 constexpr double noise_reach = 3;
 
-/// Neighbours are of another sheet beyond this many deviations and this slope over the mean plane. Distances on scans need some
-/// such bound, but hardly tell slopes between 0.4 and 1 apart.
+/// A neighbor belongs to another sheet if its offset exceeds both this many standard deviations and this slope over the mean
+/// plane. Distances on scans need such a bound, but hardly depend on it for slopes between 0.4 and 1.
 constexpr double sheet_reach = 4;
 constexpr double steepest = 0.6;
 
-/// Squared length that an offset across the mean plane adds: all of it where it is far beyond noise, nothing within.
+/// Squared length that an offset across the mean plane adds: nothing within noise, and all of it far beyond noise.
 double squared_excess(double offset, double noise) {
   const double squared = offset * offset, reach = noise_reach * noise_reach * noise * noise;
   return squared > reach ? squared - reach * (reach / squared) : 0.0;
@@ -47,7 +47,7 @@ Vec3 unfolded_edge(const Vec3& tail, const Vec3& head, const Vec3& edge, double 
   Vec3 flat = edge - offset * mean.normal;
   const double squared_sine = dot(mean.across, mean.across);
   if (squared_sine > 0) flat = flat + ((1 / mean.cosine - 1) * dot(mean.across, flat) / squared_sine) * mean.across;
-  // From the mean plane to that of the tail by the smallest rotation.
+  // Smallest rotation from the mean plane to the plane of the tail.
   flat = flat - (dot(tail, flat) / (1 + mean.cosine)) * (mean.normal + tail);
   const double excess = squared_excess(offset, noise), squared = dot(flat, flat);
   if (!(excess > 0 && squared > 0)) return flat;
@@ -55,8 +55,8 @@ Vec3 unfolded_edge(const Vec3& tail, const Vec3& head, const Vec3& edge, double 
 }
 
 bool leaves_surface(const Vec3& tail, const Vec3& head, const Vec3& edge, double noise) {
-  // Normals less than a right angle apart add up to the root of two at least: this is twice the square of what the offset is at
-  // the most, and mostly tells that it is not steep.
+  // Two unit normals at most a right angle apart have a sum at least sqrt(2) long. The squared offset is therefore at most half
+  // of sum * sum, and this bound usually shows that the edge is not steep.
   const double sum = std::abs(dot(tail, edge)) + std::abs(dot(head, edge)), squared = dot(edge, edge);
   constexpr double steepest_squared = steepest * steepest;
   if (sum * sum * (1 + steepest_squared) < 1.99 * steepest_squared * squared) return false;
@@ -78,10 +78,9 @@ struct Plane {
 
 using Matrix2 = std::array<double, 4>;
 
-/// Components in frame `from` -> components in frame `to` under the smallest rotation that takes the plane of `from` to
-/// that of `to`. With n the normal of `from` and m = +-(normal of `to`) it is v -> v - (m.v)/(1 + n.m) (n + m) on
-/// vectors v of the first plane; the sign that makes n.m >= 0 is taken when `reflect` asks for it, which makes the
-/// matrix a reflection.
+/// Matrix from components in frame `from` to components in frame `to`, of the smallest rotation between the two planes. With n
+/// the normal of `from` and m the normal of `to` it is v -> v - (m.v)/(1 + n.m) (n + m) for vectors v of the first plane. With
+/// `reflect`, m is the negative normal of `to`, so that n.m >= 0, and the matrix is a reflection.
 Matrix2 smallest_rotation(const Plane& from, const Plane& to, bool reflect) {
   const Vec3 m = reflect ? -1.0 * to.normal : to.normal;
   const double scale = 1.0 / (1.0 + std::max(dot(from.normal, m), -1.0 + 1e-12));
@@ -91,18 +90,18 @@ Matrix2 smallest_rotation(const Plane& from, const Plane& to, bool reflect) {
   for (int a = 0; a < 2; ++a)
     for (int b = 0; b < 2; ++b)
       R[2 * a + b] = dot(*rows[a], *columns[b]) - scale * dot(m, *columns[b]) * dot(from.normal, *rows[a]);
-  // Orthogonal to the last bit: first column normalized, second its perpendicular.
+  // Removes rounding: the first column is normalized, and the second is its perpendicular.
   const double r = std::hypot(R[0], R[2]), c = R[0] / r, s = R[2] / r;
   return reflect ? Matrix2{c, s, s, -c} : Matrix2{c, -s, s, c};
 }
 
-/// Where edges lie in the rows of the symmetric graph. They come in lexicographic order: a row has first the edges that it is the
-/// head of, then those that it is the tail of, each in their order, and its neighbours ascend.
+/// Positions of edges in the rows of the symmetric graph. Edges are in lexicographic order. A row contains first the edges with
+/// their head there, then those with their tail there, each in their order. Its neighbors therefore ascend.
 struct RowPlaces {
-  std::vector<Offset> begin;                    ///< of the rows; vertices + 1
-  std::vector<Offset> tails_begin;              ///< where the edges begin that the row is the tail of ...
-  std::vector<Offset> first;                    ///< ... and the first of these
-  detail::UnsetVector<std::int32_t> from_head;  ///< of each edge: so many places behind the begin of its head's row
+  std::vector<Offset> begin;                    ///< start of each row; vertices + 1
+  std::vector<Offset> tails_begin;              ///< start, in each row, of the edges with their tail there
+  std::vector<Offset> first;                    ///< first edge with its tail at each vertex
+  detail::UnsetVector<std::int32_t> from_head;  ///< position of each edge in its head's row, from the start of the row
 
   RowPlaces(const WeightedEdges& edges, const std::vector<Index>& vertex_of_clean, Index vertices, unsigned threads)
       : tails_begin(static_cast<std::size_t>(vertices), 0),

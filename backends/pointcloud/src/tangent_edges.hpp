@@ -1,6 +1,6 @@
 /// \file
-/// An edge between two tangent planes, unfolded into one: corners keep their length, noise across the surface does not
-/// count.
+/// Edges of the graph: unfolding from one tangent plane to another, and transports. Creases keep their length, and noise across
+/// the surface adds none.
 #pragma once
 
 #include <optional>
@@ -12,30 +12,29 @@
 
 namespace ahm::pointcloud {
 
-/// The plane half way between those of the two ends of an edge, the signs of their normals aside. Seen from there a bend of
-/// the surface is symmetric: what lies across this plane is noise, or another sheet.
+/// The plane halfway between the planes at the two ends of an edge, whatever the signs of their normals. Relative to this plane
+/// a bend of the surface is symmetric, so an offset across it is noise, or another sheet.
 struct MeanPlane {
   MeanPlane(const Vec3& from, const Vec3& to);
-  Vec3 normal;    ///< unit length, on the side of that of the first end
+  Vec3 normal;    ///< unit length, on the side of the first end's normal
   Vec3 across;    ///< in the plane, across the crease; its length is the sine of half the angle between the two planes
-  double cosine;  ///< of half that angle, at least the root of one half
+  double cosine;  ///< cosine of half that angle, at least sqrt(1/2)
 };
 
-/// Where the head of an edge lies in the tangent plane of its tail, in space. The part of the edge in the mean plane is unfolded
-/// as two planes that meet in a crease half way; of its offset across the mean plane only what noise cannot explain adds
-/// to the length. Reversing an edge turns the result by the transport between the planes, and reverses it.
-/// @param tail, head  unit normals
+/// Position of the head of an edge in the tangent plane of its tail, as a vector of space. Unfolds the part of the edge in the
+/// mean plane like two planes that meet in a crease halfway. Of the offset across the mean plane, only the part beyond noise
+/// adds to the length. The reversed edge gives the negative vector, rotated by the transport between the planes.
+/// @param tail, head  unit normals at the ends
 Vec3 unfolded_edge(const Vec3& tail, const Vec3& head, const Vec3& edge, double noise);
 
-/// Whether an edge leaves the surface: it rises steeply over the mean plane, and far beyond noise.
+/// Whether an edge leaves the surface: it rises steeply over the mean plane, far beyond noise.
 bool leaves_surface(const Vec3& tail, const Vec3& head, const Vec3& edge, double noise);
 
-/// Fills the graph from oriented normals and weighted edges: vertices are the points that a triangle touches.
-/// Where `trusted` is 0, an edge between opposed normals is a reflection; else it is a rotation by more than 90
-/// degrees.
-/// @param noise  of offsets across the surface, units of the clean points
-/// @param kind  how transports are stored; none: as blocks where there is a reflection
-/// @param vertex_of_clean  number of each clean point among the vertices, -1: none
+/// Builds the graph from oriented normals and weighted edges. Its vertices are the points that a triangle touches. Where
+/// `trusted` is 0, an edge between opposed normals is a reflection; elsewhere it is a rotation by more than 90 degrees.
+/// @param vertex_of_clean  vertex of each clean point, -1: none
+/// @param noise            standard deviation of offsets across the surface, in units of the clean points
+/// @param kind             storage of the transports; none: blocks if there is a reflection
 CsrGraphData tangent_edges(const CleanPoints& cloud, const TangentPlanes& planes, const WeightedEdges& edges,
                            const std::vector<Index>& vertex_of_clean, Index vertices, const PerPart& trusted,
                            const PerPart& noise, unsigned threads, CloudDetails& report,

@@ -20,34 +20,36 @@
 namespace ahm::pointcloud {
 namespace {
 
-/// A given plane is contradicted when its slope is this many times that of the plane fitted to the points, and more than
-/// normals written with three digits have.
+/// An input plane is contradicted if its slope is this many times that of the plane fitted to the points, and larger than that
+/// of normals written with three digits.
 constexpr double contradiction = 2;
 constexpr double least_slope = 2e-3;
 
-/// It is also contradicted when it disagrees with those around it by this many times the angle between fitted planes, and
-/// this much: that tells on points too noisy for slopes to tell.
+/// An input plane is also contradicted if it differs from the planes around it by this many times the angle between fitted
+/// planes, and by at least this angle. This criterion works on points too noisy for slopes.
 constexpr double disagreement = 2;
 constexpr double least_disagreement = 0.1;
 
+/// Number of neighbors that measure how well planes fit.
 constexpr std::size_t most_neighbors = 12;
 
-/// Given planes of neighbours that bend by more than this are told from opposite ones by nothing but their signs, which may be
-/// wrong: beside sharper creases the fitted planes count, which bend from point to point.
+/// Input planes of neighbors that bend by more than this differ from opposite planes only by their signs, which may be wrong.
+/// At sharper creases the fitted planes are used, which bend gradually.
 constexpr double sharpest_cosine = 0.1;
-/// Of neighbours in the other sheet of a thin wall: their planes are parallel, and the way there is steep.
+/// Neighbors in the other sheet of a thin wall: their planes are parallel, and the edge to them is steep.
 constexpr double parallel = 0.7, steep = 0.3;
 
+/// How well planes fit the points around a point; 0 is best.
 struct Fit {
   double slope, disagreement;
 };
 
-/// The value of the best third.
+/// The 33rd percentile.
 double third(std::span<double> values) { return detail::value_at(values, values.size() / 3); }
 
-/// How well a field of normals fits the points around point i. Between two planes that are right, a neighbour lies in their
-/// mean plane, whatever the curvature: slopes over it, and angles between the planes, in radians, of the best third of the
-/// nearest neighbours, so that other faces of a corner and other sheets do not count.
+/// How well a field of normals fits the points around point i. Between two correct planes a neighbor lies in their mean plane,
+/// whatever the curvature. Returns the 33rd percentile of the slopes over that plane, and of the angles between the planes in
+/// radians, over the nearest neighbors. Other faces of a corner and other sheets then have no influence.
 Fit fit_of(const CleanPoints& cloud, const Neighborhoods& neighborhoods, std::span<const Vec3> normals, Index i) {
   std::array<double, most_neighbors> slopes, angles;
   std::size_t count = 0;
@@ -68,8 +70,7 @@ bool contradicts(const Fit& given, const Fit& fitted) {
          given.disagreement > std::max(least_disagreement, disagreement * fitted.disagreement);
 }
 
-/// Marks points, too, most of whose neighbors are marked: noisy normals are right by chance at some points, and not to be trusted
-/// there either.
+/// Also marks points with mostly marked neighbors: some of many noisy normals are correct by chance.
 std::vector<char> by_majority(const Neighborhoods& neighborhoods, const std::vector<char>& marked, unsigned threads) {
   std::vector<char> result = marked;
   detail::parallel_chunks(static_cast<Offset>(marked.size()), points_per_task, threads, [&](Offset begin, Offset end) {
@@ -82,8 +83,9 @@ std::vector<char> by_majority(const Neighborhoods& neighborhoods, const std::vec
   return result;
 }
 
-/// Whether the given plane of point i meets that of a neighbour in such a crease. The fitted planes, which are half way between both
-/// sides of one, tell which sides of the given ones belong together; not so in thin walls, where they are of both sheets.
+/// Whether the input plane of point i meets that of a neighbor in a sharp crease. Fitted planes lie halfway between both sides
+/// of a crease, so they decide which sides of the input planes correspond. In thin walls they do not, because they are fitted
+/// to both sheets.
 bool is_beside_crease(const CleanPoints& cloud, const Neighborhoods& neighborhoods, std::span<const Vec3> given,
                       std::span<const Vec3> fitted, Index i) {
   const double own_side = dot(given[i], fitted[i]);
@@ -130,17 +132,17 @@ std::vector<char> take_given_planes(const CleanPoints& cloud, const Neighborhood
 
 namespace {
 
-/// Neighbours are narrow, and more of them are wanted, when their second principal variance is below this share of the
-/// first.
+/// A neighborhood is narrow, and needs more points, if its second principal variance is below this fraction of the first.
 constexpr double narrow_ratio = 1e-3;
 
-/// Where the second variance is below this share of the first, neighbours may lie along a curve that bends by less than a right angle.
+/// If the second variance is below this fraction of the first, neighbors may lie along a curve that bends by less than a right
+/// angle.
 constexpr double bent_ratio = 0.05;
 
-/// Fewer points tell no curve from a plane.
+/// With fewer points a curve cannot be distinguished from a plane.
 constexpr std::size_t least_on_curve = 8;
 
-/// Fewer neighbours than half of these make no star of triangles.
+/// Fewer neighbors than half of this number are too few for a one-ring of triangles.
 constexpr std::size_t least_neighbors = 8;
 
 /// Buffers of one thread's queries.
@@ -149,11 +151,11 @@ struct QueryBuffers {
   std::vector<double> squared;
 };
 
-/// Squared distances that differ by a smaller share are equal, as those of a lattice are up to rounding.
+/// Squared distances that differ by a smaller fraction are equal; on lattices they differ by rounding.
 constexpr double equal_distances = 1e-9;
 
-/// The k nearest of k + 1, less those that are as far as the one left out, so that none of several equally near ones is
-/// preferred; but at least half of k.
+/// The k nearest of k + 1 neighbors, without those as far away as the one left out. Equally near points are
+/// thus treated alike. If fewer than half of k would remain, keeps all k.
 std::span<const Index> whole_shells(std::span<const Vec3> points, Index i, std::span<const Index> neighbors, Index k) {
   const auto most = static_cast<std::size_t>(k);
   if (neighbors.size() <= most) return neighbors;
@@ -167,7 +169,7 @@ std::span<const Index> whole_shells(std::span<const Vec3> points, Index i, std::
   return neighbors.first(2 * count >= std::max(most, least_neighbors) ? count : most);
 }
 
-/// The k neighbours of point i, nearest first, without i; valid until the buffers' next use.
+/// The k neighbors of point i, nearest first, without i; valid until the next use of the buffers.
 std::span<const Index> neighbors_of(std::span<const Vec3> points, Index i, const NeighborSearch& search, Index k,
                                     QueryBuffers& buffers) {
   buffers.indices.resize(static_cast<std::size_t>(k) + 2);
@@ -177,16 +179,16 @@ std::span<const Index> neighbors_of(std::span<const Vec3> points, Index i, const
   buffers.indices.resize(static_cast<std::size_t>(wanted));
   for (Index j : buffers.indices)
     if (found != wanted || j < 0 || static_cast<std::size_t>(j) >= points.size())
-      throw InvalidArgument("options.search: asked for " + std::to_string(wanted) + " neighbours of point " +
-                            std::to_string(i) + ", it found " + std::to_string(found) + ", among them point " +
+      throw InvalidArgument("options.search: expected " + std::to_string(wanted) + " neighbors of point " +
+                            std::to_string(i) + ", found " + std::to_string(found) + ", among them point " +
                             std::to_string(j));
-  // The point is its own nearest neighbour; a search in lower precision may rank it elsewhere or miss it.
+  // The point is its own nearest neighbor, but a search in lower precision may rank it elsewhere or miss it.
   const auto self = std::find(buffers.indices.begin(), buffers.indices.end(), i);
   buffers.indices.erase(self == buffers.indices.end() ? self - 1 : self);
   return whole_shells(points, i, buffers.indices, k);
 }
 
-/// The neighbours, nearest first, up to the first gap behind half of k.
+/// The neighbors, nearest first, up to the first gap after half of k.
 std::span<const Index> before_gap(std::span<const Vec3> points, Index i, std::span<const Index> neighbors, Index k,
                                   double ratio) {
   for (auto m = static_cast<std::size_t>((k + 1) / 2); m < neighbors.size(); ++m)
@@ -195,7 +197,7 @@ std::span<const Index> before_gap(std::span<const Vec3> points, Index i, std::sp
   return neighbors;
 }
 
-/// Of `counts[i]` neighbours at i * k, keeps those whose own neighbourhood reaches point i, and its radius.
+/// Of the `counts[i]` neighbors at i * k, keeps those with a neighborhood that reaches point i. Updates the radius.
 /// @return whether all were kept
 bool drop_unreachable(const CleanPoints& cloud, const CloudOptions& options, std::vector<Index>& counts,
                       Neighborhoods& result) {
@@ -218,7 +220,7 @@ bool drop_unreachable(const CleanPoints& cloud, const CloudOptions& options, std
   return all;
 }
 
-/// Closes the gaps that dropped neighbours left.
+/// Closes the gaps between neighborhoods after neighbors were dropped.
 void compact(const std::vector<Index>& counts, Neighborhoods& result) {
   const auto n = static_cast<Offset>(counts.size()), k = static_cast<Offset>(result.k);
   result.begin.assign(static_cast<std::size_t>(n) + 1, 0);
@@ -231,13 +233,13 @@ void compact(const std::vector<Index>& counts, Neighborhoods& result) {
   result.indices.resize(static_cast<std::size_t>(result.begin[n]));
 }
 
-/// Whether point i and its neighbours lie along a curve in their plane, as on a scan line around a pipe: as near to a parabola as
-/// narrow ones to a line.
+/// Whether point i and its neighbors lie along a curve in their plane, as on a scan line around a pipe. The tolerance to a
+/// parabola is that of narrow neighborhoods to a line.
 bool on_a_curve(std::span<const Vec3> points, Index i, std::span<const Index> neighbors, const PlaneFit& fit) {
   if (neighbors.size() < least_on_curve) return false;
   const Vec3 across = cross(fit.normal, fit.along);
   const double unit = norm(points[neighbors.back()] - points[i]);
-  // Least squares of (1, s, s^2) against t, s along and t across.
+  // Least-squares fit of (1, s, s^2) to t, where s runs along the neighborhood and t across it.
   Eigen::Matrix3d normal_matrix = Eigen::Matrix3d::Zero();
   normal_matrix(0, 0) = 1;  // the point itself
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
@@ -255,17 +257,18 @@ bool on_a_curve(std::span<const Vec3> points, Index i, std::span<const Index> ne
   return squares - right.dot(normal_matrix.ldlt().solve(right)) <= narrow_ratio * count * variance;
 }
 
-/// Whether the neighbours that a plane was fitted to do not tell how it lies.
+/// Whether the neighbors do not determine a plane.
 bool is_narrow(const PlaneFit& fit, std::span<const Vec3> points, Index i, std::span<const Index> neighbors) {
   return !(fit.ratio > narrow_ratio) || (fit.ratio < bent_ratio && on_a_curve(points, i, neighbors, fit));
 }
 
+/// More neighbors for a point with a narrow neighborhood.
 struct WiderNeighborhood {
   Index point;
   std::vector<Index> neighbors;
 };
 
-/// Fits a plane to more and more neighbours until they are no longer narrow; the widest fit wins if they stay so.
+/// Fits a plane to increasingly many neighbors until they are not narrow. If they stay narrow, returns the widest fit.
 PlaneFit fit_wider(std::span<const Vec3> points, const NeighborSearch& search, Index k, double max_edge_ratio,
                    WiderNeighborhood& wider) {
   PlaneFit fit;
@@ -280,7 +283,7 @@ PlaneFit fit_wider(std::span<const Vec3> points, const NeighborSearch& search, I
   return fit;
 }
 
-/// Puts the wider neighbourhoods, ascending by point, in place of the ordinary ones.
+/// Replaces neighborhoods by wider ones, which ascend by point.
 void replace(Neighborhoods& neighborhoods, const std::vector<WiderNeighborhood>& wider, std::span<const Vec3> points) {
   if (wider.empty()) return;
   Neighborhoods result{neighborhoods.k, {0}, {}, std::move(neighborhoods.radius)};
@@ -299,14 +302,14 @@ void replace(Neighborhoods& neighborhoods, const std::vector<WiderNeighborhood>&
   neighborhoods = std::move(result);
 }
 
-/// Unit vector of a given normal, zero when it has no direction.
+/// Unit vector of an input normal; zero if it has no direction.
 Vec3 direction(const Vec3& given) {
   const double largest = std::max({std::abs(given[0]), std::abs(given[1]), std::abs(given[2])});
   if (!(largest > 0) || !std::isfinite(given[0] + given[1] + given[2])) return {0, 0, 0};
   return normalized((1.0 / largest) * given);
 }
 
-/// Fits a plane to the neighbours of every point, to wider neighbourhoods where they are narrow.
+/// Fits a plane to the neighbors of every point. Uses wider neighborhoods where they are narrow.
 void fit_planes(const CleanPoints& cloud, const NeighborSearch& search, const CloudOptions& options,
                 Neighborhoods& neighborhoods, TangentPlanes& planes) {
   const auto n = static_cast<Offset>(cloud.points.size());
@@ -358,7 +361,7 @@ Neighborhoods find_neighborhoods(const CleanPoints& cloud, const NeighborSearch&
       counts[i] = static_cast<Index>(neighbors.size());
       result.radius[i] = norm(cloud.points[neighbors.back()] - cloud.points[i]);
     }
-    if (options.progress.stop.stop_requested()) throw Cancelled("cancelled during the neighbour search");
+    if (options.progress.stop.stop_requested()) throw Cancelled("cancelled during the neighbor search");
   });
   for (int round = 0; round < reach_rounds && !drop_unreachable(cloud, options, counts, result); ++round) continue;
   compact(counts, result);
@@ -430,7 +433,7 @@ TangentPlanes find_tangent_planes(const CleanPoints& cloud, std::span<const Vec3
 
 namespace {
 
-/// On a line, without a plane: second principal variance below this share of the first.
+/// Points lie on a line, without a plane, if their second principal variance is below this fraction of the first.
 constexpr double collinear_ratio = 1e-10;
 
 }  // namespace

@@ -35,8 +35,8 @@ double opposite_cotangent(double a, double b, double c) {
   return (b * b + c * c - a * a) / std::sqrt(std::max(sixteen_squared_areas(a, b, c), 1e-300));
 }
 
-/// A closed manifold of 2 |triangles| faces in flat half-edge arrays. Triangle t has the copies 2t, corners (a, b, c),
-/// and 2t + 1, corners (a, c, b).
+/// A closed manifold of 2 |triangles| faces in flat half-edge arrays. Triangle t has two copies: face 2t with corners (a, b,
+/// c), and face 2t + 1 with corners (a, c, b).
 class TuftedCover {
  public:
   TuftedCover(const CleanPoints& cloud, const TangentPlanes& planes, const std::vector<Triangle>& triangles,
@@ -55,7 +55,7 @@ class TuftedCover {
     glue(cloud, planes, triangles);
   }
 
-  /// The least length to be added to every edge of a part that keeps each face away from degeneracy ([SC20] Sec. 4.5).
+  /// For each part, the least length that keeps every face away from degeneracy when added to every edge ([SC20] Sec. 4.5).
   std::vector<double> least_mollification(const CloudParts& parts) const {
     std::vector<double> sum(static_cast<std::size_t>(parts.count), 0.0), epsilon = sum;
     std::vector<Offset> sides(sum.size(), 0);
@@ -75,20 +75,21 @@ class TuftedCover {
     detail::for_each_index(length_.size(), threads_, [&](std::size_t h) { length_[h] += epsilon.at(tail_[h]); });
   }
 
-  /// Faces at points that lack triangles are tainted, and so are those that a flip joins with them.
+  /// Marks the faces at points that lack triangles as tainted. A flip taints both of its faces if one of them is tainted.
   void taint(const std::vector<char>& complete) {
     tainted_.assign(tail_.size() / 3, 0);
     for (std::size_t h = 0; h < tail_.size(); ++h)
       if (!complete[tail_[h]]) tainted_[h / 3] = 1;
   }
-  /// Points without a tainted face.
+  /// Removes the marks of points with a tainted face.
   std::vector<char> untainted(std::vector<char> complete) const {
     for (std::size_t h = 0; h < tail_.size(); ++h)
       if (tainted_[h / 3]) complete[tail_[h]] = 0;
     return complete;
   }
 
-  /// Flips edges until all are Delaunay [BS07]. Returns the number of flips.
+  /// Flips edges until all are Delaunay [BS07].
+  /// @return the number of flips
   Offset flip_to_delaunay() {
     Offset flips = 0;
     detail::flip_to_delaunay(
@@ -106,16 +107,16 @@ class TuftedCover {
 
   bool is_delaunay(Half h) const {
     const Half t = twin_[h];
-    // Two sides of one face: folded onto itself, it cannot be flipped and is Delaunay.
+    // Two sides of one face: the face is folded onto itself, and its edge is Delaunay because it cannot be flipped.
     return h / 3 == t / 3 || (is_acute(h) && is_acute(t)) || cotangent(h) + cotangent(t) >= -1e-10;
   }
-  /// Whether the opposite angle is at most a right one: the sign of its cotangent.
+  /// Whether the opposite angle is at most a right angle: the sign of its cotangent.
   bool is_acute(Half h) const {
     const double a = length_[h], b = length_[next(h)], c = length_[previous(h)];
     return b * b + c * c - a * a >= 0;
   }
 
-  /// Of each edge that is not, one half; ascending.
+  /// One half of each edge that is not Delaunay, ascending.
   std::vector<Half> not_delaunay() const {
     const auto halves = static_cast<Offset>(tail_.size());
     std::vector<std::vector<Half>> parts(static_cast<std::size_t>((halves + halves_per_task - 1) / halves_per_task));
@@ -130,13 +131,13 @@ class TuftedCover {
 
   void flip(Half h);
 
-  /// A side of a triangle, seen from its smaller end.
+  /// A side of a triangle, directed from its smaller to its larger end.
   struct Side {
     Index head;
-    bool left, left_of_head;  ///< whether the triangle is left of it, by the normals of both ends
+    bool left, left_of_head;  ///< whether the triangle is to its left, by the normals at either end
     bool near_head;           ///< whether the apex is nearer to the head
-    float reach;              ///< how far it is from both, beside the length of the side
-    Half forward, backward;   ///< in the copy whose front it is on, and in the other one
+    float reach;              ///< sum of the squared distances of the apex to both ends, relative to the squared length
+    Half forward, backward;   ///< half-edges along the side in one copy, and against it in the other one
   };
   void glue(const CleanPoints& cloud, const TangentPlanes& planes, const std::vector<Triangle>& triangles);
   void glue_around(std::span<const Side> edge, std::vector<Side>& left, std::vector<Side>& right);
@@ -148,10 +149,10 @@ class TuftedCover {
   detail::UnsetVector<Index> tail_;
   detail::UnsetVector<Half> twin_;
   detail::UnsetVector<double> length_;
-  std::vector<char> tainted_;  ///< of each face; empty: none
+  std::vector<char> tainted_;  ///< per face; empty: no face is tainted
 };
 
-/// Replaces the faces (i, j, k) and (j, i, m) on both sides of edge (i, j) by (m, k, i) and (k, m, j).
+/// Replaces the faces (i, j, k) and (j, i, m) on both sides of the edge (i, j) by (m, k, i) and (k, m, j).
 void TuftedCover::flip(Half h) {
   const Half t = twin_[h];
   if (!tainted_.empty() && tainted_[h / 3] != tainted_[t / 3]) tainted_[h / 3] = tainted_[t / 3] = 1;
@@ -179,11 +180,11 @@ void TuftedCover::flip(Half h) {
   set(mj, j, l_jk);
 }
 
-/// Around every edge the faces are put in a cyclic order, and the front of each is glued to the back of the next. Sides
-/// left and right of the edge alternate, since local triangulations overlap and consecutive faces should continue each
+/// Puts the faces around every edge in a cyclic order, and glues the front of each to the back of the next. Faces to the left
+/// and to the right of the edge alternate, because local triangulations overlap and consecutive faces should continue each
 /// other.
 void TuftedCover::glue(const CleanPoints& cloud, const TangentPlanes& planes, const std::vector<Triangle>& triangles) {
-  // Of triangle t the corners of the sides 3 t, ..., and their half-edges in the first copy and in the second, from 6 t on.
+  // For the sides 3 t, 3 t + 1, 3 t + 2 of triangle t: corners, and half-edges in both copies relative to 6 t.
   struct Corners {
     int from, to, apex, forward, backward;
   };
@@ -200,7 +201,7 @@ void TuftedCover::glue(const CleanPoints& cloud, const TangentPlanes& planes, co
     const Vec3 opposite = across - edge;
     const Vec3 normal = cross(edge, across);
     const double unit = dot(edge, edge), tail = dot(across, across) / unit, head = dot(opposite, opposite) / unit;
-    const auto reach = static_cast<float>(tail + head);  // no number where the side is too short to have a square
+    const auto reach = static_cast<float>(tail + head);  // NaN if the squared length of the side underflows
     return {t[of.to],
             dot(normal, planes.normals[t[of.from]]) > 0,
             dot(normal, planes.normals[t[of.to]]) > 0,
@@ -214,8 +215,8 @@ void TuftedCover::glue(const CleanPoints& cloud, const TangentPlanes& planes, co
     for (Offset i = from; i < to; ++i) {
       sides.clear();
       for (const Offset side : by_smaller_end.of(static_cast<Index>(i))) sides.push_back(side_of(side));
-      // Those of one edge by the shape of their triangles, which neither scale nor place nor rotation changes. In single
-      // precision: of equal ones, as on lattices, the order of triangles decides, and not rounding.
+      // Sorts the sides of one edge by the shape of their triangles, which scaling, translation and rotation do not change. In
+      // single precision the order of triangles decides between equal ones, as on lattices, and rounding does not.
       std::sort(sides.begin(), sides.end(), [](const Side& p, const Side& q) {
         if (p.head != q.head) return p.head < q.head;
         return p.reach != q.reach ? p.reach < q.reach : p.forward < q.forward;
@@ -229,12 +230,12 @@ void TuftedCover::glue(const CleanPoints& cloud, const TangentPlanes& planes, co
   });
 }
 
-/// @param left, right  workspace
+/// @param left, right  work space
 void TuftedCover::glue_around(std::span<const Side> edge, std::vector<Side>& left, std::vector<Side>& right) {
   left.clear();
   right.clear();
-  // Relative to the first side, so that the signs of the normals do not matter, and seen from the end that is nearer to its
-  // apex, so that the points' numbers do not.
+  // Left and right are relative to the first side, so that the signs of the normals do not matter. They are seen from the end
+  // nearer to its apex, so that the numbers of the points do not matter.
   const bool from_head = edge.front().near_head;
   const auto is_left = [&](const Side& side) { return from_head ? side.left_of_head : side.left; };
   for (const Side& side : edge) (is_left(side) == is_left(edge.front()) ? left : right).push_back(side);
@@ -281,7 +282,7 @@ WeightedEdges TuftedCover::weighted_edges() const {
       entries.clear();
       for (const Half h : by_smaller_end.of(static_cast<Index>(i))) {
         const Index high = std::max(tail_[h], tail_[next(h)]);
-        // Half the cotangent, and half of that for each of the two layers. Loops are dropped.
+        // Half the cotangent, and half of that for each of the two copies. Loops are dropped.
         if (high != i) entries.push_back({high, h, 0.25 * cotangent(h)});
       }
       std::sort(entries.begin(), entries.end(),
@@ -290,8 +291,8 @@ WeightedEdges TuftedCover::weighted_edges() const {
         const Index head = entry->head;
         double weight = 0;
         for (; entry != entries.end() && entry->head == head; ++entry) weight += entry->weight;
-        // Diagonals of cocircular quadrilaterals weigh nothing but rounding; they are no edges. Points whose area is below
-        // all numbers beside larger parts are no vertices.
+        // The weights of diagonals of cocircular quadrilaterals are zero up to rounding; these are no edges. Points with areas
+        // that underflow next to larger parts are no vertices.
         if (weight <= 1e-10 || !(result.masses[i] > 0) || !(result.masses[head] > 0)) continue;
         part.tails.push_back(static_cast<Index>(i));
         part.heads.push_back(head);

@@ -8,32 +8,34 @@
 
 namespace ahm::pointcloud {
 
-/// Undirected edges {tail < head} in lexicographic order, and a mass per vertex (0 where no triangle touches it).
+/// Undirected edges {tail < head} in lexicographic order, and a mass per vertex (0 if no triangle touches it).
 struct WeightedEdges {
   std::vector<Index> tails, heads;
   std::vector<double> weights;  ///< > 0
   std::vector<double> masses;
 };
 
-/// Glues two copies of every triangle into a manifold without boundary, mollifies its edge lengths, flips it to an
-/// intrinsic Delaunay triangulation and sums its cotangent weights over the two layers. Parallel edges are summed,
-/// loops dropped. Fills `flips` and `mollification` (in units of the clean points, the largest of the parts) of the report.
+/// Glues two copies of every triangle into a manifold without boundary, mollifies its edge lengths, flips it to an intrinsic
+/// Delaunay triangulation, and sums its cotangent weights over the two copies. Sums parallel edges and drops loops. Fills
+/// `flips` and `mollification` (in units of the clean points, the largest of the parts) of the report.
 WeightedEdges tufted_laplacian(const CleanPoints& cloud, const TangentPlanes& planes,
                                const std::vector<Triangle>& triangles, const CloudParts& parts, unsigned threads,
                                CloudDetails& report);
 
-/// How far the least mollification of a triangle with these side lengths is from none, given the mean length of all sides of
-/// its part of the cloud: the largest of these over all triangles there, if positive, is added to every edge.
+/// The length that must be added to every edge for this triangle to keep its margin in the triangle inequality; negative if the
+/// margin is larger. The largest value over all triangles of a part, if positive, is added to every edge of that part.
+/// @param a, b, c      side lengths of the triangle
+/// @param mean_length  mean length of all sides in its part of the cloud
 double mollification_of(double a, double b, double c, double mean_length);
 
-/// The same Laplacian of a part of a cloud, whose border is made of points that lack triangles.
+/// Input and output of the Laplacian for a part of a cloud. Points at the border of the part lack triangles.
 struct CoverPart {
-  double mollification = 0;    ///< of the whole cloud
-  std::vector<char> complete;  ///< of each point: all triangles at it are there
-  /// Filled: of each point, that no flip which the border had a part in came near it; its edges and mass are those of the
-  /// whole cloud.
+  double mollification = 0;    ///< length added to every edge, that of the whole cloud
+  std::vector<char> complete;  ///< for each point, whether all its triangles are present
+  /// Output, for each point: no flip that the border influenced came near it. Its edges and mass equal those of the whole cloud.
   std::vector<char> certain;
 };
+/// The Laplacian for a part of a cloud.
 WeightedEdges tufted_laplacian(const CleanPoints& cloud, const TangentPlanes& planes,
                                const std::vector<Triangle>& triangles, CoverPart& part, CloudDetails& report);
 

@@ -20,11 +20,11 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// Triangles thinner than this, relative to their longest side, count as this thin.
+/// Triangles thinner than this, relative to their longest side, are treated as if they had this height.
 constexpr double least_height = 1e-10;
 
-/// x with the smallest |x| among those that minimize |S x - b|, S symmetric positive semi-definite. Directions in which S
-/// is smaller than `threshold` of its largest eigenvalue count as none.
+/// The x with the smallest |x| that minimizes |S x - b|, for symmetric positive semi-definite S. Treats eigenvalues below
+/// `threshold` times the largest one as zero.
 Vector3d solve_least(const Matrix3d& S, const Vector3d& b, double threshold) {
   const Eigen::SelfAdjointEigenSolver<Matrix3d> eigen(S);
   Vector3d y = eigen.eigenvectors().transpose() * b;
@@ -33,7 +33,7 @@ Vector3d solve_least(const Matrix3d& S, const Vector3d& b, double threshold) {
   return eigen.eigenvectors() * y;
 }
 
-/// Twice the area of a triangle, kept away from zero relative to its longest side.
+/// Twice the area of a triangle, at least `least_height` times its longest side squared.
 double doubled_area(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
   const double longest = std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
   return std::max((b - a).cross(c - a).norm(), least_height * longest);
@@ -52,8 +52,8 @@ void Polygon::read(const PolygonMesh& mesh, Index face) {
   find_weights();
 }
 
-/// The gradient of sum (x_c - p)^T M_c (x_c - p) with M_c = |e|^2 I - e e^T for the side e at corner c is zero where
-/// (sum M_c) p = sum M_c x_c. All relative to the mean of the corners, which is p where the corners are on a line.
+/// The gradient of sum (x_c - p)^T M_c (x_c - p), with M_c = |e|^2 I - e e^T for the side e at corner c, is zero where
+/// (sum M_c) p = sum M_c x_c. Positions are relative to the mean of the corners, which is p if the corners lie on a line.
 void Polygon::find_middle() {
   const std::size_t m = size();
   Vector3d mean = Vector3d::Zero();
@@ -69,8 +69,8 @@ void Polygon::find_middle() {
   middle_ = mean + solve_least(S, b, 1e-12);
 }
 
-/// w_c = 1/m + X_c . y with X the corners about their mean and (X^T X) y = p - mean: the smallest weights that sum to one
-/// and hit p. p is then what the weights give.
+/// The smallest weights that sum to one and reproduce p: w_c = 1/m + X_c . y, where X are the corners relative to their mean and
+/// (X^T X) y = p - mean. Finally p is recomputed from the weights.
 void Polygon::find_weights() {
   const std::size_t m = size();
   Vector3d mean = Vector3d::Zero();
@@ -123,7 +123,7 @@ bool Polygon::cut_ears(std::vector<std::array<std::size_t, 3>>& triangles) const
   std::iota(left.begin(), left.end(), std::size_t{0});
   const std::size_t before = triangles.size();
   while (left.size() > 3) {
-    // The roundest ear, so that straight corners wait for a better triangle.
+    // Takes the roundest ear, so that straight corners wait for a better triangle.
     std::size_t best = left.size();
     double most = 0;
     for (std::size_t k = 0; k < left.size(); ++k) {
@@ -149,7 +149,7 @@ bool Polygon::cut_ears(std::vector<std::array<std::size_t, 3>>& triangles) const
   }
   triangles.resize(before);
   if (size() != 4) return false;
-  // A twisted quad is a bent one: along the diagonal that leaves less area.
+  // A twisted quad is a bent one. Cuts it along the diagonal that leaves less area.
   auto area_of = [&](std::size_t a, std::size_t b, std::size_t c) {
     return (corner_[b] - corner_[a]).cross(corner_[c] - corner_[a]).norm();
   };
@@ -212,7 +212,8 @@ Vector3d position(const PolygonMesh& mesh, Index v) { return Vector3d(mesh.posit
 /// A unit vector perpendicular to n.
 Vector3d across(const Vector3d& n) { return n.unitOrthogonal(); }
 
-/// The sum of the vector areas around a vertex, or where they cancel, the largest of them, or anything.
+/// Unit normal of a vertex: the direction of the sum of the vector areas around it. If they cancel, the direction of the
+/// largest one; if all are zero, the z axis.
 Vector3d vertex_normal(const PolygonMesh& mesh, const std::vector<Vector3d>& area, Index v) {
   Vector3d sum = Vector3d::Zero(), largest = Vector3d::Zero();
   for (Offset corner : mesh.corners_at(Vertex(v))) {
@@ -225,8 +226,8 @@ Vector3d vertex_normal(const PolygonMesh& mesh, const std::vector<Vector3d>& are
   return largest.norm() > 0 ? Vector3d(largest.normalized()) : Vector3d(0, 0, 1);
 }
 
-/// The rotation of smallest angle that takes one plane to the other, between their axes: the polar factor of
-/// the projection. Where the normals are opposite, any rotation is as small as another.
+/// The rotation by the smallest angle that takes one plane to the other, between their axes: the polar factor of the
+/// projection. If the normals are opposite, all rotations are equally small.
 std::complex<double> smallest_turn(const Axes& from, const Axes& to) {
   const std::complex<double> z{to.x.dot(from.x) + to.y.dot(from.y), to.y.dot(from.x) - to.x.dot(from.y)};
   const double size = std::abs(z);
@@ -238,7 +239,7 @@ std::complex<double> smallest_turn(const Axes& from, const Axes& to) {
 Axes axes_along(const Vector3d& normal, const Vector3d& direction) {
   Vector3d x = direction - normal.dot(direction) * normal;
   x = x.norm() > 1e-12 * direction.norm() ? Vector3d(x.normalized()) : across(normal);
-  x = (x - normal.dot(x) * normal).normalized();  // twice is enough
+  x = (x - normal.dot(x) * normal).normalized();  // again, against rounding
   return {x, normal.cross(x), normal};
 }
 
@@ -266,7 +267,7 @@ Frames find_frames(const PolygonMesh& mesh, unsigned threads) {
   });
   detail::for_each_index(faces, threads, [&](std::size_t f) {
     const auto corners = mesh.face(static_cast<Index>(f));
-    // A face without area lies in the tangent plane of its first corner.
+    // A face without area gets the tangent plane of its first corner.
     const double size = area[f].norm();
     const Vector3d normal = size > 0 ? Vector3d(area[f] / size) : frames.vertex[corners[0]].normal;
     frames.face[f] = axes_along(normal, position(mesh, corners[1]) - position(mesh, corners[0]));
@@ -286,10 +287,10 @@ using Eigen::Vector3d;
 
 constexpr double largest_weight = 1e4;
 
-/// Of a sliver on the boundary, so that vertices in nothing else stay joined.
+/// Least weight of a sliver on the boundary; keeps vertices connected that have no other faces.
 constexpr double least_conductance = 1e-3;
 
-/// Stiffness and mass of every face, and what is worth telling about them.
+/// Stiffness and mass of every face, and their statistics.
 class FaceMatrices {
  public:
   FaceMatrices(const PolygonMesh& mesh, const PolygonOptions& options) : mesh_(mesh), begin_(1, 0) {
@@ -307,7 +308,7 @@ class FaceMatrices {
     });
   }
 
-  /// -K_cd for the corner number `corner` and place d of its face.
+  /// The weight -K_cd between the corner `corner` and corner number d of its face.
   double weight(Offset corner, std::size_t d) const {
     const Index f = mesh_.face_of(corner);
     const Offset c = corner - mesh_.face_begin()[f], m = mesh_.face_begin()[f + 1] - mesh_.face_begin()[f];
@@ -315,8 +316,8 @@ class FaceMatrices {
   }
   double mass(Offset corner) const { return masses_[corner]; }
 
-  /// Triangles that are slivers on the boundary conduct along their outer side only, as those of triangle meshes: a side whose
-  /// weight is negative balances the other two.
+  /// Makes triangles that are slivers on the boundary conduct only along their outer side, as in triangle meshes. The negative
+  /// weight of this side balances the weights of the other two, so it cannot be set to 0 alone.
   void flatten_slivers() {
     const detail::HalfEdges edges = mesh_.topology().half_edges();
     std::vector<std::uint8_t> flat(shape_.size(), 0);
@@ -340,7 +341,8 @@ class FaceMatrices {
     }
   }
 
-  /// Takes what a face gives too little along a side from what the face beyond gives: what counts is their sum.
+  /// If only one of the two weights at a side is negative, adds it to the other one and sets it to 0. Only their sum enters the
+  /// operators.
   void balance_sides() {
     const detail::HalfEdges edges = mesh_.topology().half_edges();
     for (detail::Half h = 0; h < edges.size(); ++h) {
@@ -370,7 +372,7 @@ class FaceMatrices {
   }
 
  private:
-  /// Place of the weight between the ends of a side, from its tail.
+  /// Position of the weight between the ends of a side, in the row of its tail.
   std::size_t place(detail::Half h) const {
     const Index f = mesh_.face_of(h);
     const auto m = static_cast<Offset>(mesh_.face(f).size()), c = h - mesh_.face_begin()[f];
@@ -383,7 +385,8 @@ class FaceMatrices {
     weights_[place(h)] = weights_[static_cast<std::size_t>(begin_[f] + (c + 1) % m * m + c)] = w;
   }
 
-  /// The number of edges grows with the square of a face's corners: better said than swapped for.
+  /// The number of weights grows with the square of a face's corners. Throws instead of letting the machine swap.
+  /// @throws ResourceExhausted
   void check_memory() const {
     const double bytes = 64.0 * static_cast<double>(begin_.back()), memory = machine_memory();
     if (memory > 0 && bytes > memory)
@@ -412,12 +415,12 @@ class FaceMatrices {
   }
 
   const PolygonMesh& mesh_;
-  std::vector<Offset> begin_;  ///< of the m x m weights of each face
+  std::vector<Offset> begin_;  ///< start of each face's m x m weights
   std::vector<double> weights_, masses_;
   std::vector<Shape> shape_;
 };
 
-/// The mean length of the sides of all faces, of all and of each component, and the extremes.
+/// Computes the mean length of the sides of all faces, in total and per component, and the shortest and longest side.
 void measure_sides(const PolygonMesh& mesh, CsrGraphData& g, PolygonDetails& report) {
   detail::ComponentLengths lengths(static_cast<std::size_t>(mesh.vertex_count()));
   double sum = 0, shortest = std::numeric_limits<double>::infinity(), longest = 0;
@@ -440,14 +443,14 @@ void measure_sides(const PolygonMesh& mesh, CsrGraphData& g, PolygonDetails& rep
   g.component_edge_lengths = lengths.means();
 }
 
-/// The chord in a tangent plane, at its own length as far as it leans to that plane at all.
+/// The chord projected to a tangent plane and scaled to its own length, by a factor of at most 10.
 std::complex<double> log_of_chord(const Axes& axes, const Vector3d& chord) {
   const std::complex<double> projected = axes.components(chord);
   const double length = chord.norm(), seen = std::abs(projected);
   return seen > 0.1 * length ? length / seen * projected : 10.0 * projected;
 }
 
-/// R_ji as stored, for corners i and j of one face.
+/// Writes R_ji for corners i and j of one face, as the graph stores it.
 void write_transport(std::complex<double> turn_i, bool mirrored_i, std::complex<double> turn_j, bool mirrored_j,
                      TransportKind kind, double* out) {
   const bool reflects = mirrored_i != mirrored_j;
@@ -463,7 +466,7 @@ void write_transport(std::complex<double> turn_i, bool mirrored_i, std::complex<
   out[3] = reflects ? -R.real() : R.real();
 }
 
-/// Vertices whose faces have no area still need a mass, small against that of others of their component with area.
+/// Gives vertices with no area around them a positive mass that is small within their component.
 void raise_masses(CsrGraphData& g) {
   for (std::size_t v = 0; v < g.masses.size(); ++v) {
     const double own = g.component_edge_lengths.empty() ? 0 : g.component_edge_lengths[v];

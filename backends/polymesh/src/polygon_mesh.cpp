@@ -36,7 +36,7 @@ void PolygonMesh::collect_corners() {
   for (std::size_t h = 0; h < corners().size(); ++h) at_[fill[corners()[h]]++] = static_cast<Offset>(h);
 }
 
-/// Where the mesh has no orientation, each vertex takes that of its first face and compares the others with it.
+/// Orients each vertex of a non-orientable mesh like its first face, and compares the other faces with it.
 void PolygonMesh::orient_vertices() {
   const detail::HalfEdges edges = topology_.half_edges();
   mirrored_.assign(corners().size(), 0);

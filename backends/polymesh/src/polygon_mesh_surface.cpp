@@ -30,7 +30,7 @@ Frame frame_in_space(const Axes& axes, const Vec3& origin) {
   return {origin, array(axes.x), array(axes.y), array(axes.normal)};
 }
 
-/// Where a position near a triangle lies in it: barycentric coordinates of its projection to the plane.
+/// Barycentric coordinates of a position projected to the plane of a triangle.
 std::array<double, 3> barycentric(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   const double scale = 1 / power_of_two_below(std::max(largest(b - a), largest(c - a)));
   const Vec3 u = scale * (b - a), v = scale * (c - a), w = scale * (p - a);
@@ -40,7 +40,7 @@ std::array<double, 3> barycentric(const Vec3& p, const Vec3& a, const Vec3& b, c
   return {1 - s - t, s, t};
 }
 
-/// The triangle of a face's refinement that a point of the face lies in, or next to.
+/// The triangle in the refinement of a face that contains a point of the face, or is nearest to it.
 FacePoint locate(const Refinement& refinement, Index face, const Vec3& position) {
   FacePoint best{0, {1, 0, 0}};
   double most = -std::numeric_limits<double>::infinity();
@@ -59,7 +59,7 @@ FacePoint locate(const Refinement& refinement, Index face, const Vec3& position)
   return best;
 }
 
-/// @param what  "twisted"
+/// @param what  property of the faces, such as "twisted"
 std::string faces_that_are(const char* what, const std::vector<Index>& faces) {
   return std::to_string(faces.size()) + " faces are " + what + ", the first is face " + std::to_string(faces.front());
 }
@@ -68,7 +68,7 @@ RowMap rows_of(const PolygonMesh& mesh) {
   return RowMap(mesh.report().vertices, mesh.vertex_count(), mesh.topology().rows());
 }
 
-/// The rows of the vertices of a refinement, whose first rows are the vertices of the mesh.
+/// The rows of the vertices of a refinement. Its first rows are the vertices of the mesh.
 RowMap rows_of(const PolygonMesh& mesh, const RowMap& refined) {
   std::vector<RowVertex> pairs;
   for (const auto& [row, vertex] : mesh.topology().rows())
@@ -81,13 +81,13 @@ RowMap rows_of(const PolygonMesh& mesh, const RowMap& refined) {
 struct PolygonMeshSurface::Impl {
   PolygonMesh mesh;
   PolygonDetails details;
-  std::vector<Index> face_rows;  ///< of the faces as given
-  std::vector<Index> corners;    ///< vertices of the graph at the corners as stored
+  std::vector<Index> face_rows;  ///< rows at the corners of the input faces
+  std::vector<Index> corners;    ///< graph vertices at the stored corners
   RowMap rows;
-  Frames frames;                               ///< polygons
-  std::optional<CsrGraph> polygons;            ///< either this
-  Refinement refinement;                       ///< refined
-  std::optional<TriangleMeshSurface> refined;  ///< or this
+  Frames frames;                               ///< polygons only
+  std::optional<CsrGraph> polygons;            ///< empty if refined
+  Refinement refinement;                       ///< refined only
+  std::optional<TriangleMeshSurface> refined;  ///< empty for polygons
 
   explicit Impl(PolygonMesh given) : mesh(std::move(given)), face_rows(mesh.topology().given_corners()) {
     for (Index f = 0; f < mesh.face_count(); ++f)
@@ -100,11 +100,11 @@ struct PolygonMeshSurface::Impl {
   void build_polygons(const PolygonOptions& options);
   void build_refined(const PolygonOptions& options);
 
-  /// Weights in the order of the corners as stored, with sum 1.
+  /// Weights in the order of the stored corners, with sum 1.
   std::vector<double> stored_weights(const FacePoint& point) const;
   Source source(Index face, std::span<const double> stored_weights, Complex u) const;
   Vector3d point(Index face, std::span<const double> stored_weights) const;
-  /// The direction of the first side as given, in the plane of the face.
+  /// The direction of the first side of the input face, in the plane of the face.
   Complex first_side(Index face) const;
   Frame frame(Index face, std::span<const double> stored_weights) const;
 };
@@ -144,7 +144,7 @@ void PolygonMeshSurface::Impl::build_refined(const PolygonOptions& options) {
   rows = rows_of(mesh, refined->rows());
   for (Index v : mesh.corners()) {
     const std::optional<Vertex> vertex = refined->rows().vertex(Row(v));
-    corners.push_back(vertex ? vertex->index : 0);  // in faces without area alone: any
+    corners.push_back(vertex ? vertex->index : 0);  // only in faces without area: any vertex
   }
 }
 
@@ -181,12 +181,12 @@ Source PolygonMeshSurface::Impl::source(Index face, std::span<const double> stor
   for (std::size_t c = 0; c < stored_weights.size(); ++c) {
     const auto corner = static_cast<std::size_t>(mesh.face_begin()[face]) + c;
     const Index v = mesh.corners()[corner];
-    // In the source's frame; at the chord's length, as the edges.
+    // In the frame of the source, scaled to the length of the chord like the edges.
     const Vector3d chord = Vector3d(mesh.position(Vertex(v)).data()) - p;
     Complex z = plane.components(chord) * std::conj(u);
     if (std::abs(z) > 0.1 * chord.norm()) z *= chord.norm() / std::abs(z);
     z *= polygons->length_unit();
-    // From the plane of the face to the vertex: turn^-1 w, or turn^-1 conj(w) where the corner is mirrored.
+    // From the plane of the face to the vertex: turn^-1 w, or turn^-1 conj(w) if the corner is mirrored.
     auto carried = [&](Complex w) {
       return std::conj(frames.turn[corner]) * (mesh.mirrored(static_cast<Offset>(corner)) ? std::conj(w) : w);
     };
@@ -350,7 +350,7 @@ std::vector<Warning> PolygonMeshSurface::warnings() const {
     const std::vector<Warning> told = ahm::warnings(impl_->refined->details().topology);
     for (Warning& warning : impl_->refined->warnings())
       if (std::ranges::find(told, warning.id, &Warning::id) == told.end() && warning.id != "collinear_faces")
-        result.push_back(std::move(warning));  // collinear pieces of polygons are no faces of the input
+        result.push_back(std::move(warning));  // collinear triangles of a refinement are no input faces
     return result;
   }
   if (!d.clamped && d.negative_weights > 0)

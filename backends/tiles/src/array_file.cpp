@@ -33,7 +33,7 @@ struct Header {
   Name kind;
   std::uint64_t arrays, size;
   std::uint64_t unused;
-  std::uint64_t checksum;  ///< of the header before it, and the table
+  std::uint64_t checksum;  ///< checksum of the preceding header fields and the table
 };
 static_assert(sizeof(Header) == 64);
 
@@ -94,7 +94,7 @@ ArrayFile::ArrayFile(const std::filesystem::path& path, std::string_view kind) :
   struct stat info {};
   if (::fstat(file, &info) != 0 || !S_ISREG(info.st_mode) || info.st_size < static_cast<off_t>(sizeof(Header))) {
     ::close(file);
-    fail("it is cut short, or no file of tiles");
+    fail("it is truncated, or not a file of tiles");
   }
   size_ = static_cast<std::size_t>(info.st_size);
   void* data = ::mmap(nullptr, size_, PROT_READ, MAP_SHARED, file, 0);
@@ -140,23 +140,24 @@ void ArrayFile::fail(const std::string& what) const { throw IoError("cannot read
 void ArrayFile::check_header(std::string_view kind) const {
   Header header;
   std::memcpy(&header, data_, sizeof(header));
-  if (header.magic != magic) fail("it is no file of tiles");
-  if (header.order != order_mark) fail("it was written by a machine of another byte order");
+  if (header.magic != magic) fail("it is not a file of tiles");
+  if (header.order != order_mark)
+    fail("it was written on a machine with another byte order; build the tiles on this machine");
   if (header.version != format_version)
-    fail("its version is " + std::to_string(header.version) + ", this is " + std::to_string(format_version) +
-         "; build the tiles again");
-  if (header.size != size_) fail("it is cut short; remove its folder and make it again");
+    fail("its version is " + std::to_string(header.version) + ", and this program requires " +
+         std::to_string(format_version) + "; build the tiles again");
+  if (header.size != size_) fail("it is truncated; remove its folder and make it again");
   if (header.arrays > most_arrays || sizeof(Header) + header.arrays * sizeof(Entry) > size_)
     fail("its header is damaged; remove its folder and make it again");
   const std::span table(reinterpret_cast<const Entry*>(data_ + sizeof(Header)), header.arrays);
   if (header.checksum != checksum_of(header, table)) fail("its header is damaged; remove its folder and make it again");
-  if (header.kind != name_of(kind)) fail("it holds other things than " + std::string(kind));
+  if (header.kind != name_of(kind)) fail("it does not contain " + std::string(kind));
   for (const Entry& entry : table)
     if (entry.place > size_ || entry.bytes > size_ - entry.place)
       fail("its header is damaged; remove its folder and make it again");
 }
 
-/// In the table; as many as arrays: nowhere.
+/// Index of an array in the table; the number of arrays if there is no such array.
 std::size_t ArrayFile::place_of(std::string_view name) const {
   Header header;
   std::memcpy(&header, data_, sizeof(header));

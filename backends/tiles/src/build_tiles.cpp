@@ -11,11 +11,11 @@
 namespace ahm::tiles {
 namespace {
 
-/// What a step needs to be done, and what it leaves.
+/// A step with its prerequisites, its results and its functions.
 struct Rule {
   Step step;
-  Stage stage;                ///< that must have been reached, and from which on it is done if it leads to the next one
-  std::string_view result{};  ///< kind of file it leaves
+  Stage stage;                ///< stage at which the step runs; at later stages it is finished
+  std::string_view result{};  ///< kind of file that it writes per tile
   void (*tile)(TileFolder&, std::size_t) = nullptr;
   void (*all)(TileFolder&) = nullptr;
 };
@@ -34,7 +34,7 @@ const std::vector<Rule>& rules() {
   return table;
 }
 
-/// Kinds of files, and the stage from which on they are not needed.
+/// A kind of intermediate file, and the stage from which it is not needed.
 struct Passing {
   std::string_view kind;
   Stage stage;
@@ -51,7 +51,7 @@ const Rule& rule_of(std::string_view name) {
     if (rule.step.name == name) return rule;
     names += (names.empty() ? "" : ", ") + std::string(rule.step.name);
   }
-  throw InvalidArgument("step '" + std::string(name) + "' is none of " + names);
+  throw InvalidArgument("step '" + std::string(name) + "' is not one of " + names);
 }
 
 bool run_tile(TileFolder& folder, const Rule& rule, std::size_t tile) {
@@ -65,16 +65,18 @@ bool run_tile(TileFolder& folder, const Rule& rule, std::size_t tile) {
   return true;
 }
 
-/// The tiles that a step for all together would miss.
+/// Checks that the preceding step is finished for all tiles. @throws InvalidArgument
 void require_tiles(const TileFolder& folder, const Rule& rule) {
   const Rule& before = *(&rule - 1);
   for (std::size_t t = 0; t < folder.tiles(); ++t)
     if (!folder.has(before.result, t))
-      throw InvalidArgument("step '" + std::string(rule.step.name) + "' needs step '" + std::string(before.step.name) +
-                            "' of all tiles, and that of tile " + std::to_string(t) + " is not done");
+      throw InvalidArgument("step '" + std::string(rule.step.name) + "' requires step '" +
+                            std::string(before.step.name) + "' of all tiles; run it for tile " + std::to_string(t) +
+                            " first");
 }
 
-/// What tiles were made from is gone when all are built, so that a single one cannot be made again.
+/// Checks that no tile of a built folder is missing. The intermediate files are gone, so a single tile cannot be built again.
+/// @throws IoError
 void require_graph(const TileFolder& folder, const std::filesystem::path& path) {
   if (folder.manifest().stage != Stage::built) return;
   for (std::size_t t = 0; t < folder.tiles(); ++t)
@@ -106,16 +108,17 @@ bool run_step(const std::filesystem::path& path, std::string_view name, std::opt
   TileFolder folder(path, options);
   const Stage now = folder.manifest().stage;
   if (rule.step.per_tile != tile.has_value())
-    throw InvalidArgument("step '" + std::string(name) +
-                          (rule.step.per_tile ? "' is one of a tile" : "' is one of all tiles"));
+    throw InvalidArgument(
+        "step '" + std::string(name) +
+        (rule.step.per_tile ? "' runs for one tile; set its number" : "' runs for all tiles; leave the tile out"));
   if (tile && *tile >= folder.tiles())
-    throw InvalidArgument("tile " + std::to_string(*tile) + " is not there; there are " +
+    throw InvalidArgument("tile " + std::to_string(*tile) + " does not exist; the number of tiles is " +
                           std::to_string(folder.tiles()));
   require_graph(folder, path);
   if (now > rule.stage) return false;
   if (now < rule.stage)
     throw InvalidArgument("step '" + std::string(name) +
-                          "' needs what all tiles have in common before it; the tiles are " +
+                          "' requires the earlier steps of all tiles; the tiles are only " +
                           std::string(to_string(now)));
   if (tile) return run_tile(folder, rule, *tile);
   require_tiles(folder, rule);
@@ -135,7 +138,7 @@ void build_tiles(const std::filesystem::path& path, const BuildOptions& options)
     if (rule.all) rule.all(folder);
   }
   require_graph(TileFolder(path, options), path);
-  TileFolder(path, options).tidy();  // after a process that was killed while it did so
+  TileFolder(path, options).tidy();  // in case a process was killed during that
 }
 
 }  // namespace ahm::tiles

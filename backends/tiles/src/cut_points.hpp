@@ -1,5 +1,5 @@
 /// \file
-/// Points of a tile as they were cut from the input.
+/// The points of a tile as read from the input.
 #pragma once
 
 #include <cstdint>
@@ -11,9 +11,10 @@ namespace ahm::tiles {
 
 inline constexpr std::string_view cut_kind = "cut";
 
+/// A point of the input with its row.
 struct CutPoint {
-  Vec3 point;        ///< as in the input
-  std::int64_t row;  ///< there
+  Vec3 point;        ///< position in the input
+  std::int64_t row;  ///< row in the input
 };
 static_assert(sizeof(CutPoint) == 32);
 

@@ -13,15 +13,15 @@
 namespace ahm::tiles {
 namespace {
 
-/// In radii of neighbourhoods: what a complete star depends on (itself; three rounds of dropping neighbours; the planes of
-/// neighbours; who may join it, at most three radii away) is within eight of the largest, ten of most. Flips of edges may come from
-/// farther away.
+/// Widths in neighborhood radii. A complete star depends on its own points, three rounds of dropping neighbors, the planes of neighbors,
+/// and points that may be joined to it, at most three radii away. These are within eight of the largest radii, or ten typical radii.
+/// The margin allows for edge flips, which may depend on points farther away.
 constexpr double depends_on = 10, margin = 4;
 
-/// Noise of more than this share of the spacing makes a cloud in memory take more neighbours, as point_cloud_surface.cpp does.
+/// Noise, as a share of the spacing, above which a cloud in memory uses more neighbors (point_cloud_surface.cpp).
 constexpr double much_noise = 0.5;
 
-/// What most neighbourhoods in a tile reach.
+/// 90th percentile of the neighborhood radii in a tile, from a sample.
 double typical_radius(const TileFolder& folder, std::size_t tile) {
   const pointcloud::Placement placement = folder.placement();
   std::vector<Vec3> own;
@@ -38,7 +38,7 @@ double typical_radius(const TileFolder& folder, std::size_t tile) {
   return most > 0 ? most : 1e-3;
 }
 
-/// Whether all is there that the tile and a margin around it depend on.
+/// Whether the surroundings contain all points on which the tile and a margin around it depend.
 bool suffices(const Surroundings& around, const std::vector<char>& complete, double width, double beyond) {
   for (std::size_t i = 0; i < complete.size(); ++i)
     if (!complete[i] && (around.covered[i] >= (width - beyond) * (1 - 1e-9))) return false;
@@ -64,7 +64,7 @@ void write(const TileFolder& folder, std::size_t tile, const Surroundings& aroun
   AroundFile::write(folder, tile, around, planes, complete);
 }
 
-/// The median of an array of all tiles; nothing where it is empty everywhere.
+/// The median of an array over all tiles; none if it is empty in all tiles.
 std::optional<double> median(const TileFolder& folder, std::string_view name) {
   std::uint64_t size = 0;
   const auto of = [&](const ArrayFile& file) { return file.get<double>(name); };
@@ -82,7 +82,7 @@ std::optional<double> median(const TileFolder& folder, std::string_view name) {
   return result.value();
 }
 
-/// @param largest  median of the largest offsets
+/// The counts of all tiles together. @param largest  median of the largest offsets
 pointcloud::OffsetCounts offset_counts(const TileFolder& folder, double largest) {
   pointcloud::OffsetCounts sum;
   for (std::size_t t = 0; t < folder.tiles(); ++t) {
@@ -96,7 +96,7 @@ pointcloud::OffsetCounts offset_counts(const TileFolder& folder, double largest)
 
 }  // namespace
 
-/// Neighbours and planes, with as much around the tile as they and all that follows depend on.
+/// Finds neighbors and tangent planes of a tile, with the surroundings that these and later steps depend on.
 void find_planes(TileFolder& folder, std::size_t tile) {
   const double radius = typical_radius(folder, tile);
   const pointcloud::CloudOptions options = folder.cloud_options();
@@ -111,7 +111,7 @@ void find_planes(TileFolder& folder, std::size_t tile) {
   }
 }
 
-/// The noise of the whole cloud.
+/// Measures the noise of the whole cloud. @throws InvalidGeometry (too noisy for 30 neighbors)
 void measure_noise(TileFolder& folder) {
   const double all = median(folder, "offsets").value_or(0), largest = median(folder, "largest").value_or(0);
   Manifest& m = folder.manifest();
@@ -120,8 +120,8 @@ void measure_noise(TileFolder& folder) {
   if (m.options.k == 0 && m.k == 30 && m.noise > much_noise * spacing)
     throw InvalidGeometry(
         "noisy_cloud",
-        "the noise of the points across the surface, " + detail::number(m.noise / spacing) +
-            " of their spacing, asks for more than 30 neighbours, whose number is not chosen for tiles",
+        "the noise of the points across the surface is " + detail::number(m.noise / spacing) +
+            " of their spacing, which requires more than 30 neighbors; tiles do not choose their number automatically",
         "plan them with k 60 or 120");
   folder.finish(Stage::measured);
 }

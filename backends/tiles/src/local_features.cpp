@@ -37,7 +37,7 @@ class Area final : public LocalFeature {
   std::vector<double> area_;
 };
 
-/// Of columns of the input, over the vertices at its rows: those inside refined polygons have none.
+/// Means of columns of the input. Vertices without a row, such as those inside refined polygons, are skipped.
 class Means final : public LocalFeature {
  public:
   Means(const std::vector<std::string>& files, const TiledGraph& graph) : graph_(graph) {
@@ -45,7 +45,8 @@ class Means final : public LocalFeature {
       columns_.emplace_back(file);
       if (columns_.back().size() != graph.manifest().points)
         throw InvalidArgument("'" + file + "' has " + std::to_string(columns_.back().size()) +
-                              " values, the input of the tiles " + std::to_string(graph.manifest().points) + " rows");
+                              " value(s); the input of the tiles has " + std::to_string(graph.manifest().points) +
+                              " rows");
     }
   }
   std::uint64_t identity(std::size_t tile) const override {
@@ -72,7 +73,7 @@ class Means final : public LocalFeature {
   void put(std::vector<NamedArray>& arrays) const override { arrays.push_back(array("mean", means_)); }
 
  private:
-  /// Of each column the mean of the rows at a vertex. @return whether there are some
+  /// Appends the mean over the rows of a vertex for each column. @return whether the vertex has rows
   bool append(std::vector<double>& values, Index vertex) const {
     const std::size_t tile = graph_.tile_of(vertex);
     const TiledGraph::TileRows at = graph_.rows(tile);
@@ -87,8 +88,8 @@ class Means final : public LocalFeature {
 
   const TiledGraph& graph_;
   std::vector<RowValues> columns_;
-  std::vector<double> values_, means_;  ///< of the region, and what was found
-  std::vector<char> has_row_;           ///< of the region
+  std::vector<double> values_, means_;  ///< values of the region, and means that were computed
+  std::vector<char> has_row_;           ///< whether each vertex of the region has a row
 };
 
 class Curvature final : public LocalFeature {
@@ -119,7 +120,7 @@ class Curvature final : public LocalFeature {
   const TiledGraph& graph_;
   double radius_;
   std::span<const Index> region_;
-  std::vector<Vec3> positions_;  ///< of the region
+  std::vector<Vec3> positions_;  ///< positions of the region, world units
   std::vector<Vec2> curvatures_;
   std::vector<Vec3> directions_;
 };
@@ -132,7 +133,7 @@ LocalFeatures local_features(const std::vector<std::string>& names, const TiledG
   std::vector<std::string> files;
   std::set<std::string> known;
   for (const std::string& name : names) {
-    if (!known.insert(name).second) throw InvalidArgument("feature '" + name + "' is asked for twice");
+    if (!known.insert(name).second) throw InvalidArgument("feature '" + name + "' occurs twice; list it once");
     if (name.starts_with(mean))
       files.push_back(name.substr(mean.size()));
     else if (name == "count")
@@ -142,7 +143,7 @@ LocalFeatures local_features(const std::vector<std::string>& names, const TiledG
     else if (name == "curvature")
       features.push_back(std::make_unique<Curvature>(graph, radius));
     else
-      throw InvalidArgument("feature '" + name + "' is none of count, area, mean:FILE.npy, curvature");
+      throw InvalidArgument("feature '" + name + "' is not one of count, area, mean:FILE.npy, curvature");
   }
   if (!files.empty()) features.push_back(std::make_unique<Means>(files, graph));
   return features;
@@ -150,10 +151,10 @@ LocalFeatures local_features(const std::vector<std::string>& names, const TiledG
 
 namespace {
 
-/// Numbers of a tile's vertices, with names for them.
+/// Numbers of the vertices of a tile, with the names of their CSV columns.
 struct Columns {
   std::string header;
-  std::vector<std::vector<double>> arrays;  ///< of a vertex, as many in each as it has
+  std::vector<std::vector<double>> arrays;  ///< values of all vertices, `widths` numbers per vertex
   std::vector<std::size_t> widths;
 
   void add(std::vector<double> values, const std::vector<std::string>& names) {
@@ -172,15 +173,16 @@ struct Columns {
   }
 };
 
-/// @throws IoError where the file is none of features of this tile, which has vertices
+/// Reads the features of a tile with vertices. @throws IoError (another tile; whole maps; sizes)
 Columns columns_of(const std::filesystem::path& path, const TiledGraph& graph, std::size_t tile) {
   const ArrayFile file(path, local_kind);
   const auto identity = file.get<std::uint64_t>("identity");
   const std::vector<std::uint64_t> expected = graph.manifest().identity(tile);
   if (identity.size() < expected.size() || !std::equal(expected.begin(), expected.end(), identity.begin()))
-    throw IoError("cannot read '" + path.string() + "': it is not one of these tiles; make it again");
+    throw IoError("cannot read '" + path.string() + "': it belongs to other tiles; make it again");
   if (file.has("indptr"))
-    throw IoError("cannot read '" + path.string() + "': it holds whole maps; make them with features instead");
+    throw IoError("cannot read '" + path.string() +
+                  "': it contains whole maps; make the local maps with features instead");
   const auto vertices = static_cast<std::size_t>(graph.manifest().tiles[tile].vertices);
   Columns columns;
   const auto numbers = [&](const char* array) {
@@ -220,7 +222,7 @@ void write_feature_rows(const TiledGraph& graph, const std::filesystem::path& fo
   const auto columns = [&](std::size_t tile) {
     return columns_of(Manifest::file(folder, local_kind, tile), graph, tile);
   };
-  std::size_t first = 0;  // that has vertices
+  std::size_t first = 0;  // first tile with vertices
   while (first + 1 < graph.tiles() && graph.manifest().tiles[first].vertices == 0) ++first;
   const std::string header = columns(first).header;
   io::AtomicFile file(csv);
@@ -230,7 +232,7 @@ void write_feature_rows(const TiledGraph& graph, const std::filesystem::path& fo
     const Columns here = graph.manifest().tiles[t].vertices > 0 ? columns(t) : Columns{header, {}, {}};
     if (here.header != header)
       throw IoError("tile " + std::to_string(t) + " has other features than tile " + std::to_string(first) +
-                    "; make them again, in a new folder");
+                    "; make all tiles again in a new folder");
     lines.add(
         graph.rows(t), [&](std::size_t i) { return VertexLine{here.line(i)}; },
         std::string(static_cast<std::size_t>(std::count(header.begin(), header.end(), ',')), ','));

@@ -1,5 +1,5 @@
 /// \file
-/// What is kept of the map around each vertex of a tile, instead of the map.
+/// Features of local maps, which are written instead of the maps.
 #pragma once
 
 #include <cstdint>
@@ -15,33 +15,35 @@
 
 namespace ahm::tiles {
 
-/// Of the files of local maps.
+/// Kind of the files of local maps.
 inline constexpr std::string_view local_kind = "local";
 
-/// The map around a vertex, nearest first, hence itself.
+/// The map around a vertex, nearest vertices first; the first one is the vertex itself.
 struct VertexMap {
-  std::span<const Vertex> neighbors;  ///< places among the vertices of the region
+  std::span<const Vertex> neighbors;  ///< indices into the vertices of the region
   std::span<const double> logs, weights;
 };
 
-/// One of the names of `TiledLocalMapOptions::features`, or all of the same kind.
+/// One feature of `TiledLocalMapOptions::features`, or all features of one kind.
 class LocalFeature {
  public:
   virtual ~LocalFeature() = default;
-  /// Of what a tile is told beside the graph.
+  /// Checksum of the input of a tile other than the graph.
   virtual std::uint64_t identity(std::size_t) const { return 0; }
-  /// @param region  vertices of the whole graph, ascending
+  /// Starts a region and discards earlier results. @param region  vertices of the whole graph, ascending
   virtual void enter(std::span<const Index> region) = 0;
+  /// Computes the feature of one map.
   virtual void add(const VertexMap& map) = 0;
-  /// Views of what was added since `enter`.
+  /// Appends views of the features computed since `enter`.
   virtual void put(std::vector<NamedArray>& arrays) const = 0;
 };
 
 using LocalFeatures = std::vector<std::unique_ptr<LocalFeature>>;
 
+/// The features with these names.
 /// @param graph   must outlive them
-/// @param radius  of the maps
-/// @throws InvalidArgument (a name that is none, or comes twice; a column that is not of this input), IoError
+/// @param radius  radius of the maps, world units
+/// @throws InvalidArgument (an unknown or repeated name; a column of another input), IoError
 LocalFeatures local_features(const std::vector<std::string>& names, const TiledGraph& graph, double radius);
 
 }  // namespace ahm::tiles

@@ -12,13 +12,14 @@
 namespace ahm::tiles {
 namespace {
 
-/// Numbers and signs of all points around a tile, as their own tiles have them.
+/// Vertices of all points of a tile and its surroundings, from the tiles that own them.
 struct AroundVertices {
-  std::vector<Index> local;      ///< place among the vertices around, -1: none
-  std::vector<Index> vertex;     ///< of these, the number in the graph
-  std::vector<Index> component;  ///< of these
+  std::vector<Index> local;      ///< index among the vertices here of each point; -1: not a vertex
+  std::vector<Index> vertex;     ///< number in the graph of each vertex
+  std::vector<Index> component;  ///< component of each vertex
 };
 
+/// Finds these vertices, and applies the signs to the normals of the surroundings.
 AroundVertices find_vertices(const TileFolder& folder, AroundFile& around) {
   const std::vector<Index> first = folder.manifest().first_points();
   AroundVertices result;
@@ -56,7 +57,7 @@ std::span<const T> part(const std::vector<T>& values, Offset begin, Offset end, 
                                    static_cast<std::size_t>(end - begin) * width);
 }
 
-/// Rows of the input at the tile's vertices, and those that have none.
+/// Rows of the input at the vertices of a tile, and rows without a vertex.
 struct Rows {
   std::vector<Index> begin{0}, rows, removed;
 };
@@ -76,7 +77,7 @@ Rows rows_of(const ArrayFile& points, std::span<const Index> local_vertex) {
 
 }  // namespace
 
-/// The tile's part of the graph.
+/// Writes the tile's part of the graph.
 void make_graph(TileFolder& folder, std::size_t tile) {
   AroundFile around(folder, tile);
   const AroundVertices vertices = find_vertices(folder, around);
@@ -88,7 +89,7 @@ void make_graph(TileFolder& folder, std::size_t tile) {
                     folder.manifest().noise, folder.options().threads, details, folder.manifest().kind);
   const std::size_t width = TransportLayout{g.kind, 2}.width();
 
-  // The tile's own vertices follow each other.
+  // The tile's own vertices are consecutive.
   std::vector<double> masses;
   std::vector<Vec3> positions, normals;
   const auto own_masses = edges_file.get<double>("masses");
@@ -118,7 +119,7 @@ void make_graph(TileFolder& folder, std::size_t tile) {
                 array("rows", rows.rows), array("removed", rows.removed)});
 }
 
-/// Mean edge lengths of the graph and of its components, summed in the order of the whole graph.
+/// Computes the mean edge lengths of the graph and of its components. Sums in the order of the whole graph.
 void finish_graph(TileFolder& folder) {
   Manifest& m = folder.manifest();
   double all = 0;
@@ -146,7 +147,7 @@ void finish_graph(TileFolder& folder) {
     edges += row_begin.back();
   }
   m.mean_edge_length = edges > 0 ? all / static_cast<double>(edges) : 1.0;
-  // As ComponentScales shares the mean out.
+  // Distributes the mean over the components as `ComponentScales` does.
   double of_all = 0;
   for (double sum : sums) of_all += sum;
   if (edges > 0) of_all /= static_cast<double>(edges);

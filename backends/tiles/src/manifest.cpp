@@ -48,7 +48,7 @@ Json to_json(const Manifest& m) {
 Stage stage_of(const std::string& name) {
   for (std::size_t k = 0; k < names.size(); ++k)
     if (name == names[k]) return static_cast<Stage>(k);
-  throw IoError("'" + name + "' is no stage");
+  throw IoError("'" + name + "' is not a stage");
 }
 
 Manifest from_json(const Json& j, bool is_surface) {
@@ -98,13 +98,13 @@ std::string_view to_string(Stage stage) noexcept { return names[static_cast<std:
 Manifest Manifest::read(const std::filesystem::path& folder) {
   const std::string place = "cannot read '" + manifest_in(folder).string() + "': ";
   std::ifstream file(manifest_in(folder));
-  if (!file) throw IoError(place + "it is not there; plan the tiles first");
+  if (!file) throw IoError(place + "the file does not exist; plan the tiles first");
   try {
     const Json whole = Json::parse(file);
     const Json& version = whole.at("version");
     if (version != cloud_version && version != surface_version)
       throw IoError(place + "its version is " + version.dump() + "; " + std::to_string(cloud_version) + " and " +
-                    std::to_string(surface_version) + " are known; plan the tiles again");
+                    std::to_string(surface_version) + " are supported; plan the tiles again");
     if (whole.at("checksum") != hash_of(whole.at("tiles").dump()))
       throw IoError(place + "it is damaged (its checksum is wrong); plan the tiles again");
     return from_json(whole.at("tiles"), version == surface_version);

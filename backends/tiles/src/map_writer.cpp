@@ -107,7 +107,7 @@ void MapWriter::go_on(const MarchState& state, std::int64_t ok, double farthest)
     };
     auto at = std::lower_bound(state.vertices.begin(), state.vertices.end(), first);
     for (; at != state.vertices.end() && *at < last; ++at) tell(*at, *at + 1);
-    // Begins and ends ascend: an odd number of them up to here is the inside of a run.
+    // Begins and ends ascend, so an odd number of them up to `first` means that `first` is inside a run.
     const auto up_to = std::upper_bound(state.passed.begin(), state.passed.end(), first) - state.passed.begin();
     for (auto run = static_cast<std::size_t>(up_to - up_to % 2); run < state.passed.size() && state.passed[run] < last;
          run += 2)
@@ -148,7 +148,7 @@ void MapWriter::save() {
 }
 
 void MapWriter::finish(const Source& source, double radius) {
-  std::set<Index> reached;  // components of the source
+  std::set<Index> reached;  // components with a source
   for (Vertex vertex : source.vertices()) reached.insert(graph_.component(vertex.index));
   const Status why = std::isinf(radius) ? Status::unreached : Status::beyond_radius;
   for (std::size_t t = 0; t < tiles_.size(); ++t) {
@@ -206,10 +206,10 @@ constexpr std::string_view front_kind = "front";
 MapCheckpoint::MapCheckpoint(const std::filesystem::path& folder, std::uint64_t identity, Index every,
                              const TiledGraph& graph, MarchTeam& team, const TileOwners& owners)
     : folder_(folder), identity_(identity), every_(every), graph_(graph), team_(team), owners_(owners) {
-  if (owners_.rank > 0) team_.sum(0);  // what is wrong is said once
+  if (owners_.rank > 0) team_.sum(0);  // the first rank reads alone, so that an error is reported once
   read_record();
   if (owners_.rank == 0) team_.sum(0);
-  team_.sum(0);  // all have read it
+  team_.sum(0);  // waits until all ranks have read it
 }
 
 void MapCheckpoint::read_record() {
@@ -218,10 +218,10 @@ void MapCheckpoint::read_record() {
   const auto whole = nlohmann::json::parse(file, nullptr, false);
   if (!whole.is_object() || whole.value("version", 0u) != format_version)
     throw IoError("cannot read '" + record_file().string() +
-                  "': it is damaged; remove the folder to begin the map anew");
+                  "': it is damaged; remove the folder to start the map again");
   if (whole.value("identity", std::uint64_t{0}) != identity_)
     throw InvalidArgument("'" + folder_.string() +
-                          "' has a map that is not finished, of other tiles, sources or options; go on with those, or "
+                          "' contains an unfinished map of other tiles, sources or options; use the same arguments, or "
                           "remove the folder");
   begun_at_ = last_ = whole.value("bands", Index{0});
   slot_ = whole.value("slot", 0);
@@ -240,7 +240,7 @@ ArrayFile MapCheckpoint::open_state(int rank) const {
   ArrayFile file(state_file(slot_, rank), front_kind);
   if (!std::ranges::equal(file.get<std::uint64_t>("identity"), identity_of(begun_at_, rank)))
     throw IoError("cannot read '" + file.path().string() +
-                  "': it is not of this map; remove the folder to begin the map anew");
+                  "': it belongs to another map; remove the folder to start the map again");
   return file;
 }
 
@@ -255,7 +255,7 @@ std::optional<MarchState> MapCheckpoint::begin() {
 
 namespace {
 
-/// What a state says of the march as a whole, the same for all members.
+/// The part of the state that is the same for all members: statistics and depth.
 MarchState begin_state(const ArrayFile& file, Index bands) {
   MarchState state;
   const auto counts = file.get<std::int64_t>("counts");
@@ -284,13 +284,13 @@ MarchState MapCheckpoint::own_state() {
   return state;
 }
 
-/// Whether a vertex, or a neighbour of it, is this member's own.
+/// Whether this member owns a vertex or one of its neighbors.
 bool MapCheckpoint::is_near(Index vertex) const {
   return team_.owns(vertex) ||
          std::ranges::any_of(graph_.star(vertex).neighbors, [&](Index j) { return team_.owns(j); });
 }
 
-/// Of each vertex what its owner knew.
+/// The state of this member from the states of all former members: each vertex from its former owner.
 MarchState MapCheckpoint::dealt_state() {
   MarchState state;
   std::vector<std::pair<Index, Index>> passed;
@@ -306,7 +306,8 @@ MarchState MapCheckpoint::dealt_state() {
     const ArrayFile& file = files.emplace_back(open_state(rank));
     const auto owners = file.get<int>("owners");
     if (owners.size() != graph_.tiles())
-      throw IoError("cannot read '" + file.path().string() + "': it is of other tiles");
+      throw IoError("cannot read '" + file.path().string() +
+                    "': it belongs to other tiles; remove the folder to start the map again");
     if (rank == 0) state = begin_state(file, begun_at_);
     ok += file.get<std::int64_t>("counts")[3];
     farthest = std::max(farthest, file.get<double>("lengths")[1]);
@@ -363,7 +364,7 @@ void MapCheckpoint::end_band(const March& march) {
                 array("values", state.values), array("exponents", state.exponents), array("passed", state.passed)});
   last_ = s.bands;
   slot_ = 1 - slot_;
-  team_.sum(0);  // all have written theirs
+  team_.sum(0);  // waits until all ranks have written their states
   record();
 }
 
@@ -378,14 +379,14 @@ void MapCheckpoint::record() {
     file.write(whole.dump(1) + "\n");
     file.commit();
   }
-  team_.sum(0);  // nobody writes over the one before until it is not needed
+  team_.sum(0);  // no rank overwrites the previous checkpoint before the new one is recorded
 }
 
 void MapCheckpoint::remove() {
   team_.sum(0);
   if (owners_.rank == 0) {
     std::filesystem::remove(record_file());
-    std::vector<std::filesystem::path> states;  // also of members before, who may have been more
+    std::vector<std::filesystem::path> states;  // also those of former ranks, which may have been more
     for (const auto& entry : std::filesystem::directory_iterator(folder_))
       if (entry.path().extension().string().starts_with("." + std::string(front_kind))) states.push_back(entry.path());
     for (const auto& state : states) std::filesystem::remove(state);

@@ -1,5 +1,5 @@
 /// \file
-/// map.json: that a map is finished, and what it is.
+/// Writes tiles of a map, its summary map.json, and its checkpoints.
 #pragma once
 
 #include <cstdint>
@@ -16,48 +16,48 @@
 
 namespace ahm::tiles {
 
-/// What map.json of a folder says; no object where there is none.
+/// The contents of map.json in a folder; not an object if there is none.
 nlohmann::json read_finished(const std::filesystem::path& folder);
-/// Whether the folder has something finished, of this identity.
+/// Whether the folder has a finished map of this identity.
 bool is_finished(const std::filesystem::path& folder, std::uint64_t identity);
-/// Written last of all. @throws IoError
+/// Writes map.json, the last file of a map. @throws IoError
 void write_finished(const std::filesystem::path& folder, const nlohmann::json& summary);
 
-/// The rows of one tile. NaN, and a status of its own, where nothing is known.
+/// The rows of one tile of a map. Rows without a result have NaN and the status `untold`.
 struct MapTile {
   static constexpr std::string_view kind = "map";
   static constexpr std::uint8_t untold = 255;
 
   MapTile(std::size_t vertices, MarchGoal goal);
-  /// @throws IoError
+  /// Reads a tile. @throws IoError
   MapTile(const std::filesystem::path& path, MarchGoal goal);
   void write(const std::filesystem::path& path) const;
   void clear(std::size_t row);
   std::size_t bytes() const;
 
-  std::vector<double> coordinates, spread;  ///< empty where distances are all there is
+  std::vector<double> coordinates, spread;  ///< empty for maps of distances
   std::vector<double> distance;
   std::vector<std::uint8_t> status;
   std::int64_t used = 0;
   bool is_saved = false;
 };
 
-/// Takes rows, and writes a tile when it has all of its, or when memory is short.
+/// Collects rows, and writes a tile when all its rows are there, or when the memory limit is reached.
 class MapWriter final : public MapSink {
  public:
-  /// @param graph, owners  must outlive it
-  /// @param memory         bytes of tiles at a time
+  /// @param graph, owners  must outlive the writer
+  /// @param memory         limit for tiles in memory, bytes
   MapWriter(const TiledGraph& graph, const std::filesystem::path& folder, MarchGoal goal, std::size_t memory,
             const TileOwners& owners);
 
-  /// Removes what is there of own tiles.
+  /// Removes the files of own tiles.
   void begin_anew();
-  /// Takes over what is there of own tiles, as far as the march had come then: of what a later one found nothing stays.
+  /// Resumes from the files of own tiles. Keeps the rows that the march had accepted in this state, and clears all later ones.
   void go_on(const MarchState& state, std::int64_t ok, double farthest);
   void put(Index vertex, const MapRow& row) override;
   /// Writes all tiles that are in memory.
   void save();
-  /// Says of the vertices that the march did not come to why.
+  /// Sets the status of the vertices that the march did not reach.
   void finish(const Source& source, double radius);
 
   std::int64_t ok() const { return ok_; }
@@ -78,28 +78,29 @@ class MapWriter final : public MapSink {
   std::size_t memory_, bytes_ = 0;
   const TileOwners& owners_;
   std::vector<std::unique_ptr<MapTile>> tiles_;
-  std::vector<Index> left_;  ///< vertices not told of yet
-  std::vector<char> begun_;
+  std::vector<Index> left_;  ///< number of vertices without a row, per tile
+  std::vector<char> begun_;  ///< whether a tile has rows, per tile
   std::int64_t clock_ = 0, ok_ = 0, spills_ = 0;
   double farthest_ = 0;
 };
 
+/// Checkpoints of a march, from which a killed run can resume.
 class MapCheckpoint final : public MarchKeeper {
  public:
-  /// @param identity  of what the map is made, the same for all members
-  /// @param every     bands from one checkpoint to the next; 0: none are made
-  /// Others must outlive it. Called by all members.
-  /// @throws InvalidArgument where the folder has a map that is not finished, of another identity; IoError
+  /// All members must call it. References must outlive the object.
+  /// @param identity  checksum of the inputs of the map, the same for all members
+  /// @param every     bands between checkpoints; 0: no checkpoints
+  /// @throws InvalidArgument (the folder has an unfinished map of another identity), IoError
   MapCheckpoint(const std::filesystem::path& folder, std::uint64_t identity, Index every, const TiledGraph& graph,
                 MarchTeam& team, const TileOwners& owners);
 
-  /// Whose tiles are kept.
+  /// Sets the writer whose tiles belong to the checkpoint.
   void keep(MapWriter& writer) { writer_ = &writer; }
   std::optional<MarchState> begin() override;
   void end_band(const March& march) override;
-  /// Bands after which the run goes on, 0: from the source.
+  /// Number of bands of the checkpoint from which the run resumes; 0: starts at the source.
   Index begun_at() const { return begun_at_; }
-  /// The map is finished. Called by all members.
+  /// Removes the checkpoints of a finished map. All members must call it.
   void remove();
 
  private:
@@ -116,8 +117,8 @@ class MapCheckpoint final : public MarchKeeper {
   std::filesystem::path folder_;
   std::uint64_t identity_;
   Index every_, begun_at_ = 0, last_ = 0;
-  int slot_ = 0;   ///< of the last checkpoint
-  int ranks_ = 0;  ///< that made it
+  int slot_ = 0;   ///< slot of the last checkpoint, 0 or 1
+  int ranks_ = 0;  ///< number of ranks that wrote the last checkpoint
   MapWriter* writer_ = nullptr;
   const TiledGraph& graph_;
   MarchTeam& team_;

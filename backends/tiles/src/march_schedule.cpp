@@ -22,7 +22,7 @@ constexpr float far_away = std::numeric_limits<float>::infinity();
 void check(const ScheduleOptions& options) {
   if (!(options.step > 0) || !(options.width >= options.step) || !std::isfinite(options.width))
     throw InvalidArgument("step is " + detail::number(options.step) + " and width " + detail::number(options.width) +
-                          "; 0 < step <= width is needed");
+                          "; 0 < step <= width < infinity is required");
 }
 
 }  // namespace
@@ -46,8 +46,8 @@ std::vector<int> deal_tiles(std::span<const Index> first, Deal deal, int ranks, 
     for (std::size_t t = 0; t < tiles; ++t) owner[t] = static_cast<int>(t % hand);
   if (deal != Deal::arrival) return owner;
   if (distances.size() != tiles)
-    throw InvalidArgument("there are " + std::to_string(distances.size()) + " distances for " + std::to_string(tiles) +
-                          " tiles");
+    throw InvalidArgument("expected one distance per tile, found " + std::to_string(distances.size()) + " for " +
+                          std::to_string(tiles) + " tile(s)");
   std::vector<std::size_t> order(tiles);
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return distances[a] < distances[b]; });
@@ -97,7 +97,7 @@ std::vector<BandTiles> march_schedule(const TiledGraph& graph, std::span<const V
     }
     std::sort(others.begin(), others.end());
     others.erase(std::unique(others.begin(), others.end()), others.end());
-    // Band b reaches from b step to b step + width.
+    // Band b covers distances from b * step to b * step + width.
     const auto last = static_cast<std::size_t>(distance / options.step);
     const auto first =
         static_cast<std::size_t>(std::max(0.0, std::floor((distance - options.width) / options.step) + 1));

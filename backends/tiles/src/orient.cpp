@@ -12,7 +12,7 @@
 namespace ahm::tiles {
 namespace {
 
-/// An edge within the tile, places in the surroundings.
+/// An edge within the tile; a and b are indices into the surroundings.
 struct Inner {
   float bend;
   Index a, b;
@@ -48,9 +48,9 @@ TileTrees tile_trees(const AroundFile& around, std::span<const Index> tails, std
   }
   std::stable_sort(inner.begin(), inner.end(), [](const Inner& p, const Inner& q) { return p.bend < q.bend; });
 
-  pointcloud::SignedForest sets(n);  // joined for certain
+  pointcloud::SignedForest sets(n);  // points that are joined in the tree of the whole cloud
   detail::DisjointSets joined(static_cast<std::size_t>(n));
-  std::vector<char> open = leads_out;  // sets with edges to other tiles, by their smallest members
+  std::vector<char> open = leads_out;  // whether a set has edges to other tiles, by its smallest member
   for (const Inner& edge : inner) {
     const Index a = edge.a - around.begin, b = edge.b - around.begin;
     if (joined.root(a) == joined.root(b)) continue;
@@ -70,7 +70,7 @@ TileTrees tile_trees(const AroundFile& around, std::span<const Index> tails, std
     result.sign.push_back(sign);
     if (leads_out[i]) result.terminals.push_back({first + i, first + root, sign});
   }
-  for (Joint& joint : result.joints) {  // in which sets their ends are is known only now
+  for (Joint& joint : result.joints) {  // the sets of their ends are final only now
     joint.from = result.root[joint.tail - first];
     joint.inward = result.sign[joint.tail - first];
     joint.sign = product(joint.inward, relative(joint.turn));
@@ -86,31 +86,31 @@ namespace {
 using pointcloud::Evidence;
 using pointcloud::SignedForest;
 
-/// The sets of points that go over the borders of tiles, joined to components as in the whole cloud.
+/// The sets of points with edges to other tiles, joined to components as in the whole cloud.
 class OpenSets {
  public:
   explicit OpenSets(const TileFolder& folder);
 
-  /// Place of the component among those over several tiles; -1: of a set within a tile.
+  /// The component of a set: its index among components over several tiles, or -1 for a set within one tile.
   struct Member {
     Index component;
-    signed char sign;  ///< relative to the component's smallest point
+    signed char sign;  ///< sign of the set's root relative to the smallest point of the component
   };
-  /// @param root  smallest point of a set
+  /// The component of a set. @param root  smallest point of the set
   Member find(Index root) const {
     const auto found = members_.find(root);
     return found == members_.end() ? Member{-1, 1} : found->second;
   }
   std::size_t components() const { return components_; }
-  /// Edges between tiles that join opposed normals, whatever the signs of the components.
+  /// Number of edges between tiles that join opposed normals. It does not depend on the signs of the components.
   std::int64_t reflections() const { return reflections_; }
 
  private:
   void read(const TileFolder& folder);
   std::unordered_map<Index, Terminal> terminals_;
   std::vector<Joint> joints_;
-  std::vector<Index> roots_;                   // ascending
-  std::unordered_map<Index, Member> members_;  // by root
+  std::vector<Index> roots_;                   // roots of the sets, ascending
+  std::unordered_map<Index, Member> members_;  // component of each set, by root
   std::size_t components_ = 0;
   std::int64_t reflections_ = 0;
 };
@@ -142,7 +142,7 @@ OpenSets::OpenSets(const TileFolder& folder) {
     const auto found = terminals_.find(point);
     if (found == terminals_.end())
       throw IoError("point " + std::to_string(point) +
-                    " has an edge that its tile does not know; build the tiles again");
+                    " has an edge that is missing in its tile; build the tiles again");
     return found->second;
   };
   SignedForest forest(static_cast<Index>(roots_.size()));
@@ -169,7 +169,7 @@ OpenSets::OpenSets(const TileFolder& folder) {
   joints_.clear();
 }
 
-/// One tile's points, their normals, and the sets they are in.
+/// The points of one tile with their normals and sets.
 struct TileSets {
   TileSets(const TileFolder& folder, std::size_t tile)
       : points_file(folder.open(kind::surroundings, tile)), edges_file(folder.open(kind::edges, tile)) {
@@ -188,11 +188,11 @@ struct TileSets {
   std::span<const Index> root;
   std::span<const signed char> sign;
   std::span<const double> masses;
-  Index first_place = 0;  ///< of the tile's own points in its surroundings
-  Index first = 0;        ///< in the whole cloud
+  Index first_place = 0;  ///< index of the tile's first own point in its surroundings
+  Index first = 0;        ///< number of the first point in the whole cloud
 };
 
-/// What the points of components say about their signs, in the order of the whole cloud.
+/// Determines the signs of components from their points, in the order of the whole cloud.
 class Witnesses {
  public:
   Witnesses(const TileFolder& folder, const OpenSets& sets) : sets_(sets), open_(sets.components()) {
@@ -201,7 +201,7 @@ class Witnesses {
   }
   /// The final sign of each point of a tile.
   std::vector<signed char> signs(const TileSets& tile) const {
-    std::vector<Evidence> closed(tile.root.size());  // of components within the tile, by their smallest points
+    std::vector<Evidence> closed(tile.root.size());  // for components within the tile, by their smallest points
     visit(tile, [&](std::size_t i, OpenSets::Member m, Index local, signed char) {
       if (m.component < 0) closed[local].count(tile.points[i]);
     });
@@ -217,7 +217,7 @@ class Witnesses {
   }
 
  private:
-  /// use(i, member, place of the root in the tile, sign relative to the component's smallest point)
+  /// Calls use(i, member, index of the root in the tile, sign relative to the smallest point of the component) for each point.
   template <class Use>
   void visit(const TileSets& tile, const Use& use) const {
     for (std::size_t i = 0; i < tile.root.size(); ++i) {
@@ -240,7 +240,7 @@ class Witnesses {
   std::vector<Evidence> open_;
 };
 
-/// Edges within a tile that join opposed normals.
+/// Number of edges within a tile that join opposed normals.
 std::int64_t reflections_within(const TileSets& tile, const std::vector<signed char>& signs) {
   const auto tails = tile.edges_file.get<Index>("tails"), heads = tile.edges_file.get<Index>("heads");
   const auto count = static_cast<Index>(signs.size());
@@ -255,7 +255,7 @@ std::int64_t reflections_within(const TileSets& tile, const std::vector<signed c
 
 }  // namespace
 
-/// Signs of all normals, numbers of vertices and of components, both in the order of the whole cloud.
+/// Determines the signs of all normals, and numbers vertices and components in the order of the whole cloud.
 void orient(TileFolder& folder) {
   const OpenSets sets(folder);
   const Witnesses witnesses(folder, sets);

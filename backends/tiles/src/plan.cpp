@@ -23,7 +23,7 @@ namespace ahm::tiles {
 namespace {
 
 constexpr std::size_t block = std::size_t{1} << 16;            // points read at a time
-constexpr std::uint64_t most_points = std::uint64_t{1} << 30;  // as many as a cloud in memory may have
+constexpr std::uint64_t most_points = std::uint64_t{1} << 30;  // the limit of clouds in memory
 constexpr std::uint64_t most_samples = std::uint64_t{1} << 20;
 
 /// Calls use(point, row) for every finite point of the file.
@@ -39,7 +39,7 @@ void for_each_point(io::PointStream& stream, const Use& use) {
   }
 }
 
-/// Largest coordinate; counts the finite points.
+/// Counts the finite points. @return the largest absolute coordinate
 double survey(io::PointStream& stream, Manifest& m) {
   double largest = 0;
   std::uint64_t finite = 0;
@@ -49,14 +49,14 @@ double survey(io::PointStream& stream, Manifest& m) {
   });
   m.non_finite = m.points - finite;
   if (m.non_finite > 0 && !m.options.drop_non_finite)
-    throw InvalidGeometry("non_finite", std::to_string(m.non_finite) + " points of the file are not finite",
+    throw InvalidGeometry("non_finite", std::to_string(m.non_finite) + " non-finite point(s) in the file",
                           "drop such points with drop_non_finite");
   if (finite < 3)
-    throw InvalidGeometry("the cloud has " + std::to_string(finite) + " finite points; at least 3 are needed");
+    throw InvalidGeometry("the cloud has " + std::to_string(finite) + " finite point(s); at least 3 are required");
   return largest;
 }
 
-/// The exponent of what clean_points places them by, medians found by streaming.
+/// The exponent of the placement that `clean_points` would use. Computes its medians by streaming.
 int exponent_of(io::PointStream& stream, Manifest& m, const Progress& progress) {
   const double largest = survey(stream, m);
   const std::uint64_t finite = m.points - m.non_finite;
@@ -89,7 +89,7 @@ int exponent_of(io::PointStream& stream, Manifest& m, const Progress& progress) 
   return first + (spread.value() > 0 ? std::ilogb(spread.value()) : 0);
 }
 
-/// The points on the curve from which on a new tile begins: even shares of a sample.
+/// The first point on the curve of each tile except the first: quantiles of a sample.
 std::vector<Vec3> cuts(io::PointStream& stream, const Manifest& m) {
   const std::uint64_t finite = m.points - m.non_finite, stride = finite / most_samples + 1;
   std::vector<Vec3> sample;
@@ -102,7 +102,7 @@ std::vector<Vec3> cuts(io::PointStream& stream, const Manifest& m) {
   std::vector<Vec3> result;
   for (std::uint64_t t = 1; t < tiles; ++t) result.push_back(sample[t * sample.size() / tiles]);
   result.erase(std::unique(result.begin(), result.end()), result.end());
-  if (!result.empty() && result.front() == sample.front()) result.erase(result.begin());  // nothing lies before it
+  if (!result.empty() && result.front() == sample.front()) result.erase(result.begin());  // there is no point before it
   return result;
 }
 
@@ -160,13 +160,13 @@ void check(const TileOptions& options) {
 
 void check(const TileOptions& options, const io::PointStream& stream) {
   if (stream.has_normals() && !options.ignore_normals)
-    throw InvalidArgument("normals_given", "the file has normals, which tiles do not use",
-                          "set ignore_normals to have them estimated");
+    throw InvalidArgument("normals_given", "the file has normals, which tiles do not support",
+                          "set ignore_normals to estimate them");
   if (stream.size() > most_points)
     throw ResourceExhausted("the file has " + std::to_string(stream.size()) + " points; at most 2^30 are supported");
 }
 
-/// It, or the one in which it is to be made.
+/// The folder, or its nearest parent that exists.
 std::filesystem::path folder_that_exists(std::filesystem::path folder) {
   folder = std::filesystem::absolute(folder);
   while (!std::filesystem::is_directory(folder) && folder.has_relative_path()) folder = folder.parent_path();

@@ -16,12 +16,12 @@
 
 #include "ahm/error.hpp"
 
-static_assert(std::endian::native == std::endian::little, "files of NumPy are read as they are");
+static_assert(std::endian::native == std::endian::little, "NumPy files are read without conversion of the byte order");
 
 namespace ahm::tiles {
 namespace {
 
-/// What follows a key of the header's dictionary.
+/// The text of the header's dictionary after a key; empty if there is no such key.
 std::string_view after(std::string_view header, std::string_view key) {
   const auto at = header.find(key);
   if (at == std::string_view::npos) return {};
@@ -30,7 +30,7 @@ std::string_view after(std::string_view header, std::string_view key) {
   return header;
 }
 
-/// The length in a shape like (5,); none where there are several dimensions.
+/// Reads the length from a one-dimensional shape such as (5,). @return whether the shape has one dimension
 bool read_length(std::string_view shape, std::size_t& length) {
   if (!shape.starts_with('(')) return false;
   const auto [end, error] = std::from_chars(shape.data() + 1, shape.data() + shape.size(), length);
@@ -48,21 +48,21 @@ RowValues::RowValues(const std::filesystem::path& path) {
   bytes_ = is_file ? static_cast<std::size_t>(info.st_size) : 0;
   void* data = bytes_ > 0 ? ::mmap(nullptr, bytes_, PROT_READ, MAP_SHARED, file, 0) : MAP_FAILED;
   ::close(file);
-  if (data == MAP_FAILED) fail("it is no .npy file");
+  if (data == MAP_FAILED) fail("it is not a .npy file");
   data_ = data;
   try {
-    // Magic, version, length of the header (2 bytes; from version 2 on 4), a dictionary as Python writes it, the values.
+    // Format: magic, version, length of the header (2 bytes; 4 from version 2), a dictionary in Python syntax, the values.
     const std::string_view all(static_cast<const char*>(data), bytes_);
-    if (!all.starts_with("\x93NUMPY") || bytes_ < 12) fail("it is no .npy file");
+    if (!all.starts_with("\x93NUMPY") || bytes_ < 12) fail("it is not a .npy file");
     const std::size_t digits = all[6] == 1 ? 2 : 4;
     std::uint32_t length = 0;
     std::memcpy(&length, all.data() + 8, digits);
     begin_ = 8 + digits + length;
-    if (begin_ > bytes_) fail("it is cut short");
+    if (begin_ > bytes_) fail("it is truncated");
     const std::string_view header = all.substr(8 + digits, length);
     if (!after(header, "'descr'").starts_with("'<f8'")) fail("its values are not float64");
-    if (!read_length(after(header, "'shape'"), size_)) fail("it has not one dimension");
-    if (size_ > (bytes_ - begin_) / sizeof(double)) fail("it is cut short");
+    if (!read_length(after(header, "'shape'"), size_)) fail("it does not have exactly one dimension");
+    if (size_ > (bytes_ - begin_) / sizeof(double)) fail("it is truncated");
   } catch (...) {
     ::munmap(data_, bytes_);
     throw;

@@ -1,5 +1,5 @@
 /// \file
-/// Numbers of a tile's vertices as rows of the input.
+/// Writes numbers of vertices as CSV rows of the input, and reads columns of the input.
 #pragma once
 
 #include <charconv>
@@ -15,28 +15,29 @@
 
 namespace ahm::tiles {
 
-/// Shortest text that reads back as the same number; nothing for NaN.
+/// Appends the shortest text that reads back as the same number; nothing for NaN and infinity.
 inline void append_number(std::string& line, double value) {
   char text[32];
   if (std::isfinite(value)) line.append(text, std::to_chars(text, text + sizeof(text), value).ptr);
 }
 
-/// What is told of a vertex: of several at one row that of the least rank, the first of equal ones. NaN is none; where all are, the
-/// last is told.
+/// The CSV fields of a vertex. A row with several vertices takes the fields of the vertex with the smallest rank, the first of equal
+/// ones. If all ranks are NaN, it takes the last.
 struct VertexLine {
   std::string text;
   double rank = 0;
 };
 
-/// A line for each row of the input, tile after tile: its number, and what follows it.
+/// Writes one line for each row of the input, tile by tile: the number of the row and the fields of its vertex.
 class RowLines {
  public:
   RowLines(io::AtomicFile& file, const TiledGraph& graph) : file_(file) {
     for (Index row : graph.shared_rows()) shared_.emplace(row, VertexLine{{}, NAN});
   }
 
-  /// @param line     of a vertex of the tile, called once for each
-  /// @param removed  of rows without a vertex
+  /// Adds the rows of a tile.
+  /// @param line     line(i): fields of vertex i of the tile, called once per vertex
+  /// @param removed  fields of rows without a vertex
   template <class Line>
   void add(const TiledGraph::TileRows& rows, const Line& line, const std::string& removed) {
     for (std::size_t i = 0; i + 1 < rows.begin.size(); ++i) {
@@ -45,6 +46,7 @@ class RowLines {
     }
     for (Index row : rows.removed) add(row, {removed});
   }
+  /// Writes the rows with several vertices, which are complete only now.
   void finish() {
     for (const auto& [row, line] : shared_) write(row, line);
     file_.write(text_);
@@ -70,7 +72,7 @@ class RowLines {
 /// A one-dimensional .npy file of float64, memory-mapped.
 class RowValues {
  public:
-  /// @throws IoError where it cannot be read, is no such file, or is cut short
+  /// @throws IoError (the file cannot be read, is not such a file, or is truncated)
   explicit RowValues(const std::filesystem::path& path);
   ~RowValues();
   RowValues(RowValues&& other) noexcept;
@@ -81,7 +83,7 @@ class RowValues {
 
  private:
   void* data_ = nullptr;
-  std::size_t bytes_ = 0, begin_ = 0, size_ = 0;  ///< of the file; where values begin; how many
+  std::size_t bytes_ = 0, begin_ = 0, size_ = 0;  ///< size of the file; offset of the values; number of values
 };
 
 }  // namespace ahm::tiles

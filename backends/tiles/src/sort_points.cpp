@@ -27,7 +27,7 @@ std::vector<CutPoint> read_cut(const TileFolder& folder, std::size_t tile) {
 
 }  // namespace
 
-/// Along the curve, equal points once, with the rows of the input at each.
+/// Sorts the points of a tile along the curve, and merges equal points, with a list of the input rows of each point.
 void sort_points(TileFolder& folder, std::size_t tile) {
   const pointcloud::Placement placement = folder.placement();
   const std::vector<CutPoint> cut = read_cut(folder, tile);
@@ -57,6 +57,7 @@ void sort_points(TileFolder& folder, std::size_t tile) {
       {array("points", points), array("rows", rows), array("row_begin", row_begin), array("boxes", boxes_of(placed))});
 }
 
+/// Counts the distinct points of all tiles, and sets the number of neighbors. @throws InvalidGeometry (fewer than 3 points)
 void index_points(TileFolder& folder) {
   std::int64_t all = 0;
   for (std::size_t t = 0; t < folder.tiles(); ++t) {
@@ -65,7 +66,8 @@ void index_points(TileFolder& folder) {
     all += count;
   }
   if (all < 3)
-    throw InvalidGeometry("the cloud has " + std::to_string(all) + " distinct finite points; at least 3 are needed");
+    throw InvalidGeometry("the cloud has " + std::to_string(all) +
+                          " distinct finite point(s); at least 3 are required");
   const Index wanted = folder.manifest().options.k > 0 ? folder.manifest().options.k : 30;
   folder.manifest().k = static_cast<Index>(std::min<std::int64_t>(wanted, all - 1));
   folder.finish(Stage::indexed);

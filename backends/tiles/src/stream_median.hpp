@@ -1,5 +1,5 @@
 /// \file
-/// Medians of more numbers than fit into memory.
+/// Medians of sequences that do not fit into memory.
 #pragma once
 
 #include <algorithm>
@@ -12,17 +12,18 @@
 
 namespace ahm::tiles {
 
-/// Numbers in the order of doubles.
+/// An integer key that sorts as the double does.
 inline std::uint64_t sort_key(double value) {
-  const auto bits = std::bit_cast<std::uint64_t>(value + 0.0);  // one zero
+  const auto bits = std::bit_cast<std::uint64_t>(value + 0.0);  // maps -0.0 to 0.0
   return bits >> 63 ? ~bits : bits | std::uint64_t{1} << 63;
 }
 
-/// The number at place size / 2 of the sorted sequence, as std::nth_element finds it, by reading the sequence several times:
-/// histograms of leading bits, until what is left fits into memory. Call `begin`, `add` all numbers, `end`, until `done`.
+/// The number at index size / 2 of the sorted sequence, as by `std::nth_element`. Reads the sequence several times: histograms of
+/// leading bits narrow the range until the remaining numbers fit into memory. Repeat `begin`, `add` for all numbers, `end` until `done`.
 class StreamMedian {
  public:
-  /// @param most  numbers kept at a time
+  /// @param size  length of the sequence
+  /// @param most  largest number of values in memory
   explicit StreamMedian(std::uint64_t size, std::size_t most = std::size_t{1} << 22) : rank_(size / 2), most_(most) {
     left_ = size;
     done_ = size == 0;
@@ -46,8 +47,8 @@ class StreamMedian {
   void end() {
     if (collect_) {
       if (kept_.size() != std::min<std::uint64_t>(left_, most_))
-        throw IoError("the points changed while they were read");
-      const std::uint64_t at = known_ == 64 ? 0 : rank_;  // at full depth all are equal
+        throw IoError("the input changed while it was read; run the command again");
+      const std::uint64_t at = known_ == 64 ? 0 : rank_;  // with all 64 bits known, all remaining numbers are equal
       std::nth_element(kept_.begin(), kept_.begin() + static_cast<std::ptrdiff_t>(at), kept_.end());
       value_ = kept_[at];
       kept_ = {};
@@ -68,7 +69,7 @@ class StreamMedian {
 
   std::uint64_t rank_, left_, prefix_ = 0;
   std::size_t most_;
-  unsigned known_ = 0;  ///< leading bits found
+  unsigned known_ = 0;  ///< number of leading bits that are known
   bool collect_ = false, done_ = false;
   double value_ = 0;
   std::vector<std::uint64_t> counts_;

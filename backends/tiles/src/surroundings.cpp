@@ -18,10 +18,10 @@ namespace {
 constexpr std::size_t per_box = 256;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Bytes that building takes per point of the surroundings, measured.
+/// Memory of the build per point of the surroundings, bytes, measured.
 constexpr double bytes_per_point = 1500;
 
-/// Cells of a grid next to which a tile has points of its own.
+/// Grid cells that contain points of a tile, and their neighbors.
 class NearCells {
  public:
   NearCells(std::span<const Vec3> points, double width)
@@ -43,7 +43,7 @@ class NearCells {
     const Cell low = cell_of(box.low), high = cell_of(box.high);
     double cells = 1;
     for (int a = 0; a < 3; ++a) cells *= static_cast<double>(high[a] - low[a] + 1);
-    if (cells > 1000) return true;  // a leap of the curve: better to look at its points
+    if (cells > 1000) return true;  // a jump of the curve makes the box large, so its points are tested instead
     for (std::int64_t x = low[0]; x <= high[0]; ++x)
       for (std::int64_t y = low[1]; y <= high[1]; ++y)
         for (std::int64_t z = low[2]; z <= high[2]; ++z)
@@ -54,7 +54,7 @@ class NearCells {
  private:
   using Cell = std::array<std::int64_t, 3>;
   Cell cell_of(const Vec3& p) const {
-    constexpr double most = 1 << 20;  // cells beyond count as one: more points are looked at, none is missed
+    constexpr double most = 1 << 20;  // cells beyond are merged: more points are tested, none is missed
     Cell cell;
     for (int a = 0; a < 3; ++a)
       cell[a] = static_cast<std::int64_t>(std::clamp(std::floor((p[a] - origin_[a]) / width_), -most + 2, most - 2));
@@ -71,10 +71,10 @@ class NearCells {
   std::unordered_set<std::uint64_t> own_, near_;
 };
 
-/// A little less, for what rounding may have added.
+/// A length reduced slightly to allow for rounding.
 double less(double length) { return length * (1 - 1e-9); }
 
-/// The points of another tile that may be near.
+/// Appends the points of another tile that may be near.
 void collect(const ArrayFile& file, Index first, const pointcloud::Placement& placement, const NearCells& near,
              Surroundings& out) {
   const auto boxes = file.get<Box>("boxes");
@@ -94,9 +94,9 @@ void collect(const ArrayFile& file, Index first, const pointcloud::Placement& pl
 void check_memory(const TileFolder& folder, std::size_t tile, std::size_t points) {
   const double wanted = static_cast<double>(points) * bytes_per_point;
   if (wanted > static_cast<double>(folder.options().memory))
-    throw ResourceExhausted("tile " + std::to_string(tile) + " and what is around it have " + std::to_string(points) +
-                            " points, which take about " + detail::gigabytes(wanted) +
-                            "; give more memory, plan smaller tiles, or remove stray points first");
+    throw ResourceExhausted("tile " + std::to_string(tile) + " and its surroundings have " + std::to_string(points) +
+                            " points, which require about " + detail::gigabytes(wanted) +
+                            "; raise the memory limit, plan smaller tiles, or remove stray points first");
 }
 
 }  // namespace
@@ -133,7 +133,8 @@ Surroundings gather(const TileFolder& folder, std::size_t tile, double width) {
       continue;
     }
     collect(folder.open(kind::points, t), first[t], placement, near, candidates);
-    check_memory(folder, tile, own.size() + candidates.numbers.size() / 9);  // of 27 cells; some will do
+    check_memory(folder, tile,
+                 own.size() + candidates.numbers.size() / 9);  // candidates fill 27 cells, and only some of them remain
   }
   std::vector<double> distance(candidates.numbers.size());
   detail::for_each_index(distance.size(), folder.options().threads, [&](std::size_t i) {
@@ -171,14 +172,14 @@ WatchedSearch::WatchedSearch(const Surroundings& around)
 
 Index WatchedSearch::nearest(const Vec3& query, std::span<Index> indices, std::span<double> squared) const {
   const Index found = search_->nearest(query, indices, squared);
-  const Index self = indices[0];  // the points are distinct
+  const Index self = indices[0];  // because the points are distinct
   if (found < static_cast<Index>(indices.size()) || !(std::sqrt(squared[found - 1]) < around_.covered[self]))
     uncertain_[self] = !around_.whole;
   if (found_[self].empty()) found_[self].assign(indices.begin(), indices.begin() + found);
   return found;
 }
 
-/// To the points that have a marked one among their neighbours.
+/// The marks extended to all points that have a marked neighbor.
 std::vector<char> WatchedSearch::spread(const std::vector<char>& marks,
                                         const pointcloud::Neighborhoods& neighborhoods) const {
   std::vector<char> result = marks;
@@ -193,9 +194,9 @@ std::vector<char> WatchedSearch::spread(const std::vector<char>& marks,
 
 std::vector<char> WatchedSearch::complete(const pointcloud::Neighborhoods& neighborhoods, double max_edge_ratio) const {
   const std::size_t n = uncertain_.size();
-  std::vector<char> planes = uncertain_;  // whose plane and radius may be others
+  std::vector<char> planes = uncertain_;  // points whose plane and radius may differ from those in the whole cloud
   for (int round = 0; round < pointcloud::reach_rounds; ++round) planes = spread(planes, neighborhoods);
-  const std::vector<char> stars = spread(planes, neighborhoods);  // whose own triangles may be others
+  const std::vector<char> stars = spread(planes, neighborhoods);  // points whose own triangles may differ
   std::vector<Vec3> doubtful;
   for (std::size_t i = 0; i < n; ++i)
     if (stars[i]) doubtful.push_back(around_.cloud.points[i]);
@@ -203,7 +204,7 @@ std::vector<char> WatchedSearch::complete(const pointcloud::Neighborhoods& neigh
   std::vector<char> result(n);
   detail::for_each_index(n, 0, [&](std::size_t i) {
     if (stars[i]) return;
-    // No point is joined to one farther away than this.
+    // The point is not joined to points farther away than this.
     const double reach = max_edge_ratio * neighborhoods.radius[i] * (1 + 1e-9);
     if (!(reach < around_.covered[i])) return;
     if (search) {

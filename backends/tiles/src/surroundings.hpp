@@ -1,5 +1,5 @@
 /// \file
-/// A tile with its surroundings and planes, as the steps after the first hand it on.
+/// A tile with its surroundings and tangent planes.
 #pragma once
 
 #include <vector>
@@ -10,34 +10,34 @@
 
 namespace ahm::tiles {
 
-/// Least and largest coordinates of some points.
+/// Bounding box of some points.
 struct Box {
   Vec3 low, high;
 };
 
-/// Of every 256 successive points.
+/// The bounding boxes of each 256 consecutive points.
 std::vector<Box> boxes_of(std::span<const Vec3> placed);
 
 /// The points within some distance of a tile's own points, in the order of the whole cloud.
 struct Surroundings {
-  pointcloud::CleanPoints cloud;  ///< `points` and `unit` alone
-  std::vector<Index> numbers;     ///< in the whole cloud
-  std::vector<double> covered;    ///< radius around each point within which all points of the cloud are here
-  Index begin = 0, end = 0;       ///< the tile's own
-  bool whole = false;             ///< no point of the cloud is missing
+  pointcloud::CleanPoints cloud;  ///< only `points` and `unit` are set
+  std::vector<Index> numbers;     ///< numbers of the points in the whole cloud
+  std::vector<double> covered;    ///< radius around each point within which no point of the cloud is missing
+  Index begin = 0, end = 0;       ///< range of the tile's own points
+  bool whole = false;             ///< these are all points of the cloud
 };
 
-/// @throws ResourceExhausted where they need more than `BuildOptions::memory`
+/// Collects the points within `width` of a tile. @throws ResourceExhausted (more than `BuildOptions::memory`)
 Surroundings gather(const TileFolder& folder, std::size_t tile, double width);
 
-/// A search that notes whose neighbours may be others than those it found, and what it found.
+/// A neighbor search that records the neighbors it found, and the points whose neighbors may differ in the whole cloud.
 class WatchedSearch final : public pointcloud::NeighborSearch {
  public:
   explicit WatchedSearch(const Surroundings& around);
   Index nearest(const Vec3& query, std::span<Index> indices, std::span<double> squared_distances) const override;
 
-  /// Marks of the points whose star of triangles is complete: all that may have a triangle at them are here, and nothing that
-  /// these depend on lies outside.
+  /// For each point: whether its star of triangles is complete. All points that may form a triangle with it are here, and do not
+  /// depend on points outside.
   std::vector<char> complete(const pointcloud::Neighborhoods& neighborhoods, double max_edge_ratio) const;
 
  private:
@@ -45,10 +45,11 @@ class WatchedSearch final : public pointcloud::NeighborSearch {
 
   const Surroundings& around_;
   std::unique_ptr<pointcloud::NeighborSearch> search_;
-  mutable std::vector<char> uncertain_;            ///< of each point
-  mutable std::vector<std::vector<Index>> found_;  ///< by the first search from each point
+  mutable std::vector<char> uncertain_;            ///< whether the neighbors of each point may differ
+  mutable std::vector<std::vector<Index>> found_;  ///< neighbors that the first search from each point found
 };
 
+/// The file of a tile with its surroundings and tangent planes.
 struct AroundFile {
   explicit AroundFile(const TileFolder& folder, std::size_t tile) {
     const ArrayFile file = folder.open(kind::surroundings, tile);

@@ -1,5 +1,5 @@
 /// \file
-/// A folder of tiles while it is built: its manifest, its files, and what all steps have in common.
+/// A folder of tiles during the build: its manifest, its files, and functions that the steps share.
 #pragma once
 
 #include <string>
@@ -13,24 +13,25 @@
 
 namespace ahm::tiles {
 
-/// @throws InvalidArgument
+/// Checks the number of points per tile. @throws InvalidArgument
 inline void check_tile_points(Index tile_points) {
   if (tile_points < 100)
     throw InvalidArgument("tile_points is " + std::to_string(tile_points) + "; it must be at least 100");
 }
-/// That a folder does not hold tiles already. @throws InvalidArgument
+/// Checks that a folder does not contain tiles. @throws InvalidArgument
 inline void check_no_tiles(const std::filesystem::path& folder) {
   if (std::filesystem::exists(folder / "manifest.json"))
-    throw InvalidArgument("'" + folder.string() + "' holds tiles already; build them, or remove the folder");
+    throw InvalidArgument("'" + folder.string() + "' already contains tiles; build them, or remove the folder");
 }
 
-/// The kinds of files that steps leave.
+/// The kinds of files that steps write.
 namespace kind {
 inline constexpr std::string_view points = "points", surroundings = "around", neighbors = "neighbors", noise = "noise",
                                   triangles = "triangles", lengths = "lengths", edges = "edges", vertices = "vertices",
                                   graph = "graph";
 }
 
+/// A folder of tiles with its manifest.
 class TileFolder {
  public:
   TileFolder(std::filesystem::path folder, const BuildOptions& options)
@@ -50,13 +51,13 @@ class TileFolder {
   void write(std::string_view kind, std::size_t tile, const std::vector<NamedArray>& arrays) const {
     write_arrays(file(kind, tile), kind, arrays);
   }
-  /// Records that a stage is done, and removes what is not needed any more.
+  /// Records that a stage is reached, and removes files that are not needed after it.
   void finish(Stage stage) {
     manifest_.stage = stage;
     manifest_.write(path_);
     tidy();
   }
-  /// Removes files that the next stages do not need, unless all are to be kept.
+  /// Removes files that later stages do not need, unless `BuildOptions::keep` is set.
   void tidy() const;
 
   pointcloud::Placement placement() const { return {manifest_.exponent}; }
@@ -67,7 +68,7 @@ class TileFolder {
     result.threads = options_.threads;
     return result;
   }
-  /// Number of the first point of a tile, from `indexed` on.
+  /// Number of the first point of a tile. Valid from the stage `indexed`.
   Index first_point(std::size_t tile) const { return manifest_.first_points()[tile]; }
 
  private:
@@ -76,7 +77,7 @@ class TileFolder {
   Manifest manifest_;
 };
 
-/// The steps, in this order: of a tile, or of all.
+/// The steps in their order, for one tile or for all tiles.
 void sort_points(TileFolder& folder, std::size_t tile);
 void index_points(TileFolder& folder);
 void find_planes(TileFolder& folder, std::size_t tile);

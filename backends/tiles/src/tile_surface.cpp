@@ -16,7 +16,7 @@
 namespace ahm::tiles {
 namespace {
 
-/// The rows at every vertex, those that have none, and those that have several, where a mesh was cut.
+/// The rows of each vertex, rows without a vertex, and rows with several vertices, where a mesh was cut.
 struct VertexRows {
   std::vector<Index> begin, rows, removed, shared;
 };
@@ -38,12 +38,12 @@ VertexRows rows_of(const RowMap& map, Index vertices) {
   return result;
 }
 
-/// The vertices along the Morton curve.
+/// The vertices in the order of the Morton curve.
 std::vector<Index> along_curve(const TangentGraph& graph) {
   std::vector<std::pair<Vec3, Index>> places;
   for (Index i = 0; i < graph.size(); ++i) {
     const auto frame = graph.frame(i);
-    if (!frame) throw InvalidArgument("the surface has no positions; tiles are cut along them");
+    if (!frame) throw InvalidArgument("the surface has no positions, which tiles require");
     places.emplace_back(frame->origin, i);
   }
   std::sort(places.begin(), places.end(), [](const auto& a, const auto& b) {
@@ -54,7 +54,7 @@ std::vector<Index> along_curve(const TangentGraph& graph) {
   return order;
 }
 
-/// A surface, and the order of its vertices in tiles.
+/// The tiles of a surface: the order of its vertices, and their distribution over tiles.
 class Cut {
  public:
   Cut(const Surface& surface, Index tile_points)
@@ -121,10 +121,10 @@ class Cut {
  private:
   const TangentGraph& graph_;
   VertexRows rows_;
-  std::vector<Index> order_, number_;  ///< the vertex at a place; its place
-  std::vector<Index> component_;       ///< by place
-  std::vector<double> edge_lengths_;   ///< of components
-  std::vector<std::size_t> first_;     ///< places at which tiles begin
+  std::vector<Index> order_, number_;  ///< vertex at each position in the order; position of each vertex
+  std::vector<Index> component_;       ///< component of the vertex at each position
+  std::vector<double> edge_lengths_;   ///< mean edge length of each component
+  std::vector<std::size_t> first_;     ///< first position of each tile, and last the number of vertices
 };
 
 TileFacts facts_of(const Cut::Tile& tile) {
@@ -167,7 +167,7 @@ Manifest tile_surface(const Surface& surface, const std::string& input, const st
     m.tiles.push_back(facts_of(tile));
     middles.push_back(middle_of(tile.positions));
   }
-  for (std::size_t t = 0; t < cut.tiles(); ++t) {  // each is told of which whole it is a part
+  for (std::size_t t = 0; t < cut.tiles(); ++t) {  // second pass: each tile contains the identity of the whole graph
     progress.step("cut", static_cast<double>(t) / static_cast<double>(cut.tiles()));
     const Cut::Tile tile = cut.tile(t);
     const std::vector<std::uint64_t> identity = m.identity(t);

@@ -17,7 +17,7 @@
 namespace ahm::tiles {
 namespace {
 
-/// Memory that files mapped by the process take: the third number of /proc/self/statm, in pages.
+/// Resident memory of mapped files of the process, bytes: the third number of /proc/self/statm, in pages.
 std::size_t resident_file_bytes() {
   std::ifstream file("/proc/self/statm");
   std::size_t all = 0, resident = 0, shared = 0;
@@ -40,7 +40,7 @@ TiledGraph::Tile::Tile(ArrayFile mapped, std::size_t width)
   if (row_begin.size() != vertices + 1 || component.size() != vertices || weights.size() != edges ||
       logs.size() != 2 * edges || transports.size() != width * edges || row_begin.back() != static_cast<Offset>(edges))
     throw IoError("cannot read '" + file.path().string() +
-                  "': its arrays do not fit each other; remove its folder and make it again");
+                  "': its arrays have inconsistent sizes; remove its folder and make it again");
 }
 
 TiledGraph::TiledGraph(const std::filesystem::path& folder, std::size_t memory)
@@ -52,8 +52,8 @@ TiledGraph::TiledGraph(const std::filesystem::path& folder, std::size_t memory)
       unit_(std::scalbn(1.0, manifest_.exponent)),
       tiles_(manifest_.tiles.size()) {
   if (manifest_.stage != Stage::built)
-    throw InvalidArgument("the tiles in '" + folder.string() + "' are " + std::string(to_string(manifest_.stage)) +
-                          ", not built; build them first");
+    throw InvalidArgument("the tiles in '" + folder.string() + "' are only " + std::string(to_string(manifest_.stage)) +
+                          "; build them first");
   for (const TileFacts& facts : manifest_.tiles) edges_ += facts.edges;
   const ArrayFile components(folder / "components", "components");
   const auto lengths = components.get<double>("edge_lengths");
@@ -65,7 +65,7 @@ std::size_t TiledGraph::tile_of(Index vertex) const {
   return static_cast<std::size_t>(std::upper_bound(first_.begin(), first_.end(), vertex) - first_.begin() - 1);
 }
 
-/// The longest unused go first, until half of the memory is free.
+/// Releases the least recently used tiles until half of the memory limit is free.
 void TiledGraph::give_back() const {
   if (resident_file_bytes() <= memory_) return;
   std::vector<std::pair<std::int64_t, std::size_t>> order;
@@ -86,18 +86,18 @@ const TiledGraph::Tile& TiledGraph::tile(std::size_t number) const {
     const auto identity = mapped->file.get<std::uint64_t>("identity");
     if (!std::ranges::equal(identity, manifest_.identity(number)))
       throw IoError("cannot read '" + mapped->file.path().string() +
-                    "': it is another tile, or of another graph; remove its folder and make it again");
-    mapped->file.release();  // the test of the checksums has read all of it
+                    "': it is another tile, or belongs to another graph; remove its folder and make it again");
+    mapped->file.release();  // because checking the checksums has read the whole file
     tiles_[number] = std::move(mapped);
   }
-  constexpr std::int64_t often = 8192;  // reads of at most some hundred bytes each
+  constexpr std::int64_t often = 8192;  // each call reads at most some hundred bytes
   if (++clock_ % often == 0) give_back();
   tiles_[number]->used = clock_;
   last_ = number;
   return *tiles_[number];
 }
 
-/// Leaves the place in the tile in `vertex`.
+/// The tile of a vertex. @param vertex  replaced by its index in the tile
 const TiledGraph::Tile& TiledGraph::tile_at(Index& vertex) const {
   const std::size_t number = tile_of(vertex);
   vertex -= first_[number];
@@ -131,7 +131,7 @@ std::vector<Vec3> TiledGraph::middles() const {
   const ArrayFile file(folder_ / "components", "components");
   if (!file.has("middles"))
     throw IoError("the tiles in '" + folder_.string() +
-                  "' were built before their middles were kept; deal them as cards, or build them again");
+                  "' have no middles, which older versions did not store; use --deal cards, or build the tiles again");
   const auto middles = file.get<Vec3>("middles");
   return {middles.begin(), middles.end()};
 }
@@ -152,11 +152,11 @@ TiledGraph::TileRows TiledGraph::rows(std::size_t number) const {
 std::optional<Vertex> TiledGraph::vertex_of_row(Row row) const { return vertices_of_rows({&row, 1})[0]; }
 
 std::vector<std::optional<Vertex>> TiledGraph::vertices_of_rows(std::span<const Row> wanted) const {
-  std::vector<std::pair<Index, std::size_t>> places;  // rows and where they are asked for
+  std::vector<std::pair<Index, std::size_t>> places;  // each row with its index in `wanted`
   for (const Row row : wanted) {
     if (row.index < 0 || static_cast<std::uint64_t>(row.index) >= manifest_.points)
-      throw InvalidArgument("row " + std::to_string(row.index) + " is outside [0, " + std::to_string(manifest_.points) +
-                            ")");
+      throw InvalidArgument("row " + std::to_string(row.index) + " is out of range [0, " +
+                            std::to_string(manifest_.points) + ")");
     places.emplace_back(row.index, places.size());
   }
   std::sort(places.begin(), places.end());

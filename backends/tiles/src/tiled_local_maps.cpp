@@ -15,16 +15,16 @@
 namespace ahm::tiles {
 namespace {
 
-/// No patch of local_maps reaches farther than this many times the radius and its margin, along edges.
+/// Patches of `local_maps` reach at most this multiple of the radius with its margin, along edges.
 constexpr double longest_detour = 2;
 
-/// Of so many vertices maps are in memory before their features are.
+/// Number of vertices whose maps are in memory at the same time when features are computed.
 constexpr Index at_a_time = 1 << 14;
 
-/// A tile's vertices with all that their maps are made of.
+/// The vertices of a tile, with all vertices on which their maps depend.
 struct Region {
-  std::vector<Index> vertices;  ///< ascending
-  Index begin = 0, end = 0;     ///< the tile's own
+  std::vector<Index> vertices;  ///< vertices of the whole graph, ascending
+  Index begin = 0, end = 0;     ///< range of the tile's own vertices
 };
 
 Region region_of(const TiledGraph& graph, std::size_t tile, const LocalMapOptions& options) {
@@ -41,7 +41,7 @@ Region region_of(const TiledGraph& graph, std::size_t tile, const LocalMapOption
     region.vertices.push_back(vertex);
     return true;
   });
-  // And their neighbours, so that it can be seen where patches end.
+  // Adds their neighbors, by which `local_maps` detects the borders of patches.
   const std::size_t inside = region.vertices.size();
   for (std::size_t k = 0; k < inside; ++k)
     for (Index j : graph.star(region.vertices[k]).neighbors) region.vertices.push_back(j);
@@ -55,7 +55,8 @@ Region region_of(const TiledGraph& graph, std::size_t tile, const LocalMapOption
   return region;
 }
 
-/// Part of the graph with the scales of the whole, and with its frames where straight lines between vertices count.
+/// The part of the graph in a region, with the edge lengths of the whole graph, and with frames if distances are bounded by straight
+/// lines.
 CsrGraph graph_of(const TiledGraph& graph, const Region& region, const LocalMapOptions& options) {
   CsrGraphData data = cut_out(
                           graph, region.vertices,
@@ -73,7 +74,7 @@ CsrGraph graph_of(const TiledGraph& graph, const Region& region, const LocalMapO
   return CsrGraph(std::move(data));
 }
 
-/// What the file is made of.
+/// Identity of a file: checksums of the graph, the options and the features.
 std::vector<std::uint64_t> identity_of(const TiledGraph& graph, std::size_t tile, const TiledLocalMapOptions& options,
                                        const LocalFeatures& features) {
   std::vector<std::uint64_t> result = graph.manifest().identity(tile);
@@ -82,7 +83,8 @@ std::vector<std::uint64_t> identity_of(const TiledGraph& graph, std::size_t tile
   for (auto x :
        {static_cast<int>(o.nearest), static_cast<int>(o.heat.variant), static_cast<int>(o.bound_by_straight_line)})
     result.push_back(static_cast<std::uint64_t>(x));
-  for (const std::string& name : options.features)  // wherever a file is
+  for (const std::string& name :
+       options.features)  // only the name of the feature, because the path of a file does not matter
     result.push_back(checksum(std::as_bytes(std::span(name.data(), std::min(name.size(), name.find(':'))))));
   for (const auto& feature : features) result.push_back(feature->identity(tile));
   return result;
@@ -94,7 +96,7 @@ LocalFeatures checked_features(const TiledGraph& graph, const TiledLocalMapOptio
   return local_features(options.features, graph, options.maps.radius);
 }
 
-/// The maps of all of a tile's vertices, with places in the region as neighbours.
+/// The maps of the vertices begin to end - 1 of a region. Neighbors are indices into the region.
 LocalMaps maps_of(const CsrGraph& part, Index begin, Index end, const LocalMapOptions& options) {
   std::vector<Vertex> own;
   for (Index i = begin; i < end; ++i) own.emplace_back(i);
@@ -145,7 +147,8 @@ void check_local_maps(const TiledGraph& graph, const TiledLocalMapOptions& optio
 bool write_local_maps(const TiledGraph& graph, std::size_t tile, const std::filesystem::path& folder,
                       const TiledLocalMapOptions& options) {
   if (tile >= graph.tiles())
-    throw InvalidArgument("tile " + std::to_string(tile) + " is not there; there are " + std::to_string(graph.tiles()));
+    throw InvalidArgument("tile " + std::to_string(tile) + " does not exist; the number of tiles is " +
+                          std::to_string(graph.tiles()));
   const LocalFeatures features = checked_features(graph, options);
   std::filesystem::create_directories(folder);
   const auto path = Manifest::file(folder, local_kind, tile);
@@ -153,7 +156,7 @@ bool write_local_maps(const TiledGraph& graph, std::size_t tile, const std::file
   if (std::filesystem::exists(path)) {
     const ArrayFile file(path, local_kind);
     if (std::ranges::equal(file.get<std::uint64_t>("identity"), identity)) return false;
-    throw InvalidArgument("'" + path.string() + "' was made of another graph or with other options; remove it first");
+    throw InvalidArgument("'" + path.string() + "' was made from another graph or with other options; remove it first");
   }
   const Region region = region_of(graph, tile, options.maps);
   if (features.empty())

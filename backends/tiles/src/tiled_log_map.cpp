@@ -27,7 +27,7 @@ std::uint64_t identity_of(const TiledGraph& graph, const Source& source) {
   return checksum(std::as_bytes(std::span(parts)));
 }
 
-/// What the map is made of, whoever makes it.
+/// Identity of a map: the graph, the source and the options, without the number of ranks.
 std::uint64_t identity_of(std::uint64_t graph_and_source, const TiledMapOptions& options) {
   std::vector<std::uint64_t> parts{graph_and_source};
   const HeatOptions& heat = options.heat;
@@ -57,7 +57,7 @@ nlohmann::json as_json(const TiledMapSummary& s, const TiledGraph& graph, const 
 
 void check(const TiledGraph& graph, const Source& source, const TiledMapOptions& options) {
   if (options.checkpoint < 0)
-    throw InvalidArgument("checkpoint is " + std::to_string(options.checkpoint) + "; it must be at least 0 bands");
+    throw InvalidArgument("checkpoint is " + std::to_string(options.checkpoint) + "; it must be at least 0");
   check_streamed_map(graph, source, options.heat, {.radius = options.radius});
 }
 
@@ -73,7 +73,7 @@ TiledMapSummary team_log_map(const TiledGraph& graph, const Source& source, cons
                              const TiledMapOptions& options, MarchTeam& team, const TileOwners& owners) {
   check(graph, source, options);
   std::filesystem::create_directories(folder);
-  const auto first_alone = [&](const auto& task) {  // by the first member, while the others wait
+  const auto first_alone = [&](const auto& task) {  // runs on the first member, while the others wait
     if (owners.rank == 0) task();
     team.sum(0);
   };
@@ -102,7 +102,7 @@ TiledMapSummary team_log_map(const TiledGraph& graph, const Source& source, cons
   s.farthest = team.greatest(writer.farthest());
   s.spills = team.sum(writer.spills());
   s.releases = team.sum(graph.releases() - releases);
-  // All tiles of all members are there.
+  // All members have written their tiles.
   first_alone([&] {
     write_finished(folder, as_json(s, graph, source, options));
     std::filesystem::remove_all(distances_folder);
@@ -113,7 +113,7 @@ TiledMapSummary team_log_map(const TiledGraph& graph, const Source& source, cons
 
 namespace {
 
-/// Where a map of one source has it.
+/// Position of the source of a map with a single source, world units; otherwise none.
 std::optional<Vec3> place_of_source(const TiledGraph& graph, const nlohmann::json& summary) {
   const auto sources = summary.value("source_vertices", std::vector<Index>());
   if (sources.size() != 1 || sources[0] < 0 || sources[0] >= graph.size()) return std::nullopt;
@@ -126,7 +126,7 @@ void write_rows(const TiledGraph& graph, const std::filesystem::path& folder, co
   const nlohmann::json whole = read_finished(folder);
   if (!whole.is_object() || whole.value("vertices", Index{-1}) != graph.size())
     throw IoError("cannot read '" + (folder / "map.json").string() +
-                  "': the map is not finished, or not one of these tiles");
+                  "': the map is not finished, or belongs to other tiles");
   const MarchGoal goal = whole.value("coordinates", true) ? MarchGoal::map : MarchGoal::distances;
   const std::optional<Vec3> source = place_of_source(graph, whole);
   const double radius = whole.value("radius", std::numeric_limits<double>::infinity());
@@ -138,9 +138,9 @@ void write_rows(const TiledGraph& graph, const std::filesystem::path& folder, co
     const MapTile tile(Manifest::file(folder, MapTile::kind, t), goal);
     const TiledGraph::TileRows rows = graph.rows(t);
     if (tile.status.size() + 1 != rows.begin.size())
-      throw IoError("the map's tile " + std::to_string(t) + " is not one of these tiles; make the map again");
+      throw IoError("the map's tile " + std::to_string(t) + " belongs to other tiles; make the map again");
     const auto line_of = [&](std::size_t i) -> VertexLine {
-      // As on the rows of a surface: distances may be below the straight line, which no way on it is.
+      // As in `Surface::to_rows`: computed distances may be below the straight-line distance, which is a lower bound.
       const double d = bounded_distance(source ? ahm::distance(rows.positions[i], *source) : 0, tile.distance[i]);
       if (d > radius) return {none + std::string(to_string(Status::beyond_radius)), tile.distance[i]};
       std::string line;

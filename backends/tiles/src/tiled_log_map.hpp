@@ -1,5 +1,5 @@
 /// \file
-/// Who of those who make a map together owns which tile.
+/// Log maps over tiles by a team of ranks.
 #pragma once
 
 #include <cstddef>
@@ -11,17 +11,18 @@
 
 namespace ahm::tiles {
 
-/// The same for all members but for their rank.
+/// The owner of each tile. All members have the same data, except for their rank.
 struct TileOwners {
-  int rank = 0, ranks = 1;   ///< of this member, of how many
+  int rank = 0, ranks = 1;   ///< rank of this member, number of ranks
   std::vector<int> of_tile;  ///< rank of the owner of each tile
 
   bool owns(std::size_t tile) const { return of_tile[tile] == rank; }
 };
 
-/// As `write_log_map`, called by all members of the team with the same arguments; each writes its own tiles, the first one map.json.
-/// @param owners  in accordance with `team.owns`
-/// @return of all members together
+/// Makes a map as `write_log_map`. All members of the team must call it with the same arguments. Each member writes its own tiles, and
+/// the first one map.json.
+/// @param owners  must be consistent with `team.owns`
+/// @return the summary of all members together
 TiledMapSummary team_log_map(const TiledGraph& graph, const Source& source, const std::filesystem::path& folder,
                              const TiledMapOptions& options, MarchTeam& team, const TileOwners& owners);
 

@@ -27,7 +27,7 @@ pointcloud::Neighborhoods read_neighborhoods(const TileFolder& folder, std::size
 
 }  // namespace
 
-/// All triangles at points whose stars are complete; the lengths of those that begin in the tile.
+/// Writes the triangles at points whose stars are complete, and the edge lengths of those whose first corner is in the tile.
 void triangulate(TileFolder& folder, std::size_t tile) {
   const AroundFile around(folder, tile);
   const pointcloud::Neighborhoods near = read_neighborhoods(folder, tile);
@@ -47,7 +47,8 @@ void triangulate(TileFolder& folder, std::size_t tile) {
   folder.write(kind::triangles, tile, {array("triangles", triangles)});
 }
 
-/// The mollification of the whole cloud. Sums go in the order of the whole cloud, each side twice, as over both layers of its cover.
+/// Computes the mollification of the whole cloud. Sums in the order of the whole cloud, each edge twice, for both layers of the tufted
+/// cover.
 void find_mollification(TileFolder& folder) {
   double sum = 0;
   std::int64_t count = 0;
@@ -60,8 +61,7 @@ void find_mollification(TileFolder& folder) {
   }
   if (count == 0)
     throw InvalidGeometry(
-        "no point of the cloud has a tangent plane with a triangle in it: the points lie on a line, or are too far "
-        "apart from each other");
+        "the local triangulations of the cloud have no triangle: the points lie on a line, or are too far apart");
   double& epsilon = folder.manifest().mollification;
   epsilon = 0;
   for (std::size_t t = 0; t < folder.tiles(); ++t) {
@@ -74,7 +74,7 @@ void find_mollification(TileFolder& folder) {
   folder.finish(Stage::triangulated);
 }
 
-/// Weights of the edges at the tile's points, and their masses.
+/// Computes the weights of the edges at the points of a tile, and the masses of the points.
 void weigh_edges(TileFolder& folder, std::size_t tile) {
   const AroundFile around(folder, tile);
   const ArrayFile file = folder.open(kind::triangles, tile);
@@ -88,10 +88,10 @@ void weigh_edges(TileFolder& folder, std::size_t tile) {
   } else {
     edges = tufted_laplacian(around.cloud, around.planes, triangles, part, details);
     if (details.flips_stopped)
-      throw InvalidGeometry("tile " + std::to_string(tile) + ": the flips of its cover do not end");
+      throw InvalidGeometry("tile " + std::to_string(tile) + ": the edge flips of its triangulation did not finish");
     if (std::count(part.certain.begin() + around.begin, part.certain.begin() + around.end, 0) > 0)
       throw InvalidGeometry("tile " + std::to_string(tile) +
-                            ": flips reach from its border to its points; plan larger tiles");
+                            ": edge flips extend from its border to its points; plan larger tiles");
   }
   std::vector<Index> tails, heads;
   std::vector<double> weights;

@@ -10,7 +10,7 @@
 namespace ahm::trimesh {
 namespace {
 
-/// b / p for 0 <= b, with 0 / 0 = 0.
+/// b / p for b >= 0, with 0 / 0 = 0.
 double share(double b, double p) { return b > 0 ? b / p : 0.0; }
 
 }  // namespace
@@ -46,8 +46,8 @@ FlipHistory::Point FlipHistory::locate(Index face, const std::array<double, 3>& 
       m = p.weight[(flip.side[1] + 2) % 3];
       p.map.turn = product(flip.turn, p.map.turn);
     }
-    // In the triangle at i if i / alpha >= j / beta: write j as (gamma k + delta m - alpha i) / beta; else the same
-    // with i.
+    // The point is in the triangle at i if i / alpha >= j / beta. Then j is replaced by
+    // (gamma k + delta m - alpha i) / beta. Otherwise i is replaced likewise.
     const bool at_i = i * flip.beta >= j * alpha;
     const double q = at_i ? share(j, flip.beta) : share(i, alpha);
     k += q * flip.gamma;
@@ -68,10 +68,10 @@ FlipHistory::Direction FlipHistory::locate(Half corner, Vec2 direction) const {
   bool mirrored = false;
   for (std::int32_t at = first_[face]; at >= 0;) {
     const Flip& flip = flips_[at];
-    int b, to;  // new face, and corner counted from its side m k or k m
+    int b, to;  // new face; its corner, counted from the side on the diagonal
     if (face == flip.face[0]) {
       const int q = (s - flip.side[0] + 3) % 3;  // corner i, j or k
-      // At k: from k i counter-clockwise to the diagonal lies the face at i.
+      // At k the face at i extends from k i counter-clockwise to the diagonal.
       b = q == 0 ? 0 : q == 1 ? 1 : cross(direction, flip.diagonal) >= 0 ? 1 : 0;
       to = q < 2 ? 2 : b == 0 ? 1 : 0;
     } else {
@@ -82,7 +82,7 @@ FlipHistory::Direction FlipHistory::locate(Half corner, Vec2 direction) const {
       }
       direction = product(flip.turn, direction);
       const int q = (s - flip.side[1] + 3) % 3;  // corner j, i or m
-      // At m: from the diagonal counter-clockwise to m i lies the face at i.
+      // At m the face at i extends from the diagonal counter-clockwise to m i.
       b = q == 0 ? 1 : q == 1 ? 0 : cross(flip.diagonal, direction) >= 0 ? 0 : 1;
       to = q < 2 ? 2 : b == 0 ? 0 : 1;
     }
@@ -95,13 +95,13 @@ FlipHistory::Direction FlipHistory::locate(Half corner, Vec2 direction) const {
 
 namespace {
 
-/// Margin in the triangle inequality of mollified faces, in mean edge lengths.
+/// Margin of mollified faces in the triangle inequality, in mean edge lengths.
 constexpr double mollified_margin = 1e-8;
 
-/// Sides shorter than this multiple of the longest of their face have no direction.
+/// Sides shorter than this fraction of the longest side of their face have no direction.
 constexpr double least_side = 1e-15;
 
-/// The sine of an angle that counts as none: cotangents are no larger than its inverse.
+/// Sines below this are rounding errors. Its inverse bounds cotangents.
 constexpr double least_sine = 1e-16;
 
 }  // namespace
@@ -125,7 +125,7 @@ void IntrinsicTriangulation::mollify() {
   std::vector<double> length(side_.size());
   double mean = 0;
   for (std::size_t h = 0; h < side_.size(); ++h) {
-    // Both faces of an edge must agree to the last bit.
+    // The length must be the same in both faces of an edge, to the last bit.
     const Half t = twin_[h];
     length[h] = norm(side_[t >= 0 && t < static_cast<Half>(h) ? t : static_cast<Half>(h)]);
     mean += length[h] / static_cast<double>(side_.size());
@@ -159,7 +159,7 @@ double IntrinsicTriangulation::angle(Half h) const {
   return std::max(0.0, angle_between(side_[h], -side_[previous(h)]));
 }
 
-/// Whether the third corners of two flat faces at an edge fall together, so that a flip would leave no diagonal.
+/// Whether the apexes of two flat faces at an edge coincide, so that a flip would make a diagonal without length.
 bool IntrinsicTriangulation::opposite_coincide(Half h) const {
   const Half t = twin_[h];
   const double length = norm(side_[h]), along_h = -dot(side_[h], side_[previous(h)]) / length,
@@ -168,10 +168,10 @@ bool IntrinsicTriangulation::opposite_coincide(Half h) const {
   return std::abs(along_h - (mirrored ? along_t : length - along_t)) <= least_side * length;
 }
 
-/// The angles opposite the edge sum to at most pi, but for rounding; or a flip is impossible.
+/// Whether the angles opposite the edge sum to at most pi, up to rounding, or a flip is impossible.
 bool IntrinsicTriangulation::is_delaunay(Half h) const {
   const Half t = twin_[h];
-  // On the boundary, or two sides of one face, which is folded onto itself and has nothing to flip.
+  // A boundary edge, or two sides of one face, which is folded onto itself.
   if (t < 0 || h / 3 == t / 3) return true;
   auto opposite = [this](Half side) {
     const Vec2 a = side_[previous(side)], b = -side_[next(side)];
@@ -198,8 +198,8 @@ bool IntrinsicTriangulation::flip_to_delaunay(const Progress& progress) {
   return done;
 }
 
-/// Turns the face of h over: corners (a, b, c) become (a, c, b), side s becomes side 2 - s, the layout is mirrored.
-/// Returns the new place of h.
+/// Turns over the face of h: corners (a, b, c) become (a, c, b), side s becomes side 2 - s, and the layout is mirrored.
+/// @return the new number of h
 Half IntrinsicTriangulation::turn_over(Half h) {
   const Half f = 3 * (h / 3);
   auto moved = [f](Half side) { return f + 2 - (side - f); };
@@ -220,7 +220,7 @@ Half IntrinsicTriangulation::turn_over(Half h) {
   return moved(h);
 }
 
-/// Lays the faces (i, j, k) of h and (j, i, m) of t out together, in the layout of the former.
+/// Lays out the faces (i, j, k) of h and (j, i, m) of t together, in the layout of the first one.
 IntrinsicTriangulation::Quadrilateral IntrinsicTriangulation::unfold(Half h, Half t) const {
   Quadrilateral q;
   const Vec2 ij = side_[h];
@@ -229,10 +229,10 @@ IntrinsicTriangulation::Quadrilateral IntrinsicTriangulation::unfold(Half h, Hal
   q.ki = side_[previous(h)];
   q.im = product(q.turn, side_[next(t)]);
   q.mj = product(q.turn, side_[previous(t)]);
-  // The diagonal by the shorter way round.
+  // The diagonal is the sum of the shorter pair of sides.
   const bool by_i = dot(q.im, q.im) + dot(q.ki, q.ki) < dot(q.mj, q.mj) + dot(q.jk, q.jk);
   q.mk = by_i ? -(q.im + q.ki) : q.mj + q.jk;
-  // Where the diagonals cross: gamma k + delta m = alpha i + beta j.
+  // The diagonals cross at gamma k + delta m = alpha i + beta j.
   const double height_k = std::max(0.0, cross(ij, -q.ki)), height_m = std::max(0.0, cross(q.im, ij));
   q.gamma = height_k + height_m > 0 ? height_m / (height_k + height_m) : 0.5;
   const Vec2 crossing = (1 - q.gamma) * q.im - q.gamma * q.ki;

@@ -1,13 +1,14 @@
 /// \file
-/// The record of edge flips, and how points and directions of the input mesh are found in the flipped triangulation.
+/// A triangulation with edge flips, their history, and the search for points and directions of the input mesh in it.
 ///
-/// A flip retires two faces and makes two new ones in the same places of the arrays, so the flips form a directed
-/// acyclic graph, as in incremental Delaunay triangulation. A point given by its barycentric coordinates in an input
-/// face descends: at each flip that touches its face one sign decides on which side of the new diagonal it lies, and
-/// its coordinates are rewritten by additions and multiplications of non-negative numbers. Nothing is traced along the
-/// surface and no angle is summed around vertices, so there is nothing to miss and nothing to repair: a point near a
-/// diagonal may land on either side of it, on the diagonal, but at the right place. The error of one step is a rounding
-/// error of the quadrilateral's size, needles and caps included.
+/// A flip replaces two faces by two new ones at the same places of the arrays. The flips therefore form a directed acyclic
+/// graph, as in incremental Delaunay triangulation. A point with barycentric coordinates in an input face descends through this
+/// graph. At each flip that touches its face, one sign decides on which side of the new diagonal it lies, and its coordinates
+/// are updated by additions and multiplications of nonnegative numbers.
+///
+/// Nothing is traced along the surface, and no angles are summed around vertices. A point near a diagonal may end on either
+/// side of it, but always at the correct position. The error of one step is a rounding error relative to the size of the
+/// quadrilateral, also for needles and caps.
 #pragma once
 
 #include <array>
@@ -26,16 +27,16 @@ using detail::HalfEdges;
 using detail::next;
 using detail::previous;
 
-/// Faces (i, j, k) and (j, i, m) on both sides of edge ij, replaced by (m, k, i) and (k, m, j).
+/// A flip: faces (i, j, k) and (j, i, m) on both sides of edge ij are replaced by (m, k, i) and (k, m, j).
 ///
 /// The diagonals cross at alpha i + beta j = gamma k + delta m, alpha + beta = gamma + delta = 1.
 struct Flip {
-  std::array<Index, 2> face;         ///< places of the two faces
-  std::array<std::int32_t, 2> next;  ///< next flip that touches each place, -1: none
-  std::array<std::uint8_t, 2> side;  ///< side ij of the one, ji of the other; km and mk afterwards
-  bool mirrored;                     ///< the second face was turned over first
+  std::array<Index, 2> face;         ///< places of the two faces in the arrays
+  std::array<std::int32_t, 2> next;  ///< next flip that touches each of these places, -1: none
+  std::array<std::uint8_t, 2> side;  ///< side ij of the first face, ji of the second; then mk and km
+  bool mirrored;                     ///< whether the second face was turned over before
   double beta, gamma;
-  Vec2 turn;  ///< rotation: layout of the second face (after turning over) -> layout of the first and of both new ones
+  Vec2 turn;  ///< rotation: layout of the second face (after turning over) -> layout of the first and of both new faces
   Vec2 diagonal;  ///< m -> k in the layout of the new faces
 };
 
@@ -51,77 +52,80 @@ struct LayoutMap {
   }
 };
 
+/// The record of all flips, which finds points and directions of the input mesh in the flipped triangulation.
 class FlipHistory {
  public:
   explicit FlipHistory(std::size_t faces) : first_(faces, -1), last_(faces, -1) {}
 
-  /// Appends a flip; `next` is filled in here.
+  /// Appends a flip and fills in its `next`.
   void add(Flip flip);
-  /// To be called after the last flip.
+  /// Must be called after the last flip.
   void finish() { last_ = {}; }
   std::size_t size() const { return flips_.size(); }
   std::size_t bytes() const { return flips_.size() * sizeof(Flip) + first_.size() * sizeof(std::int32_t); }
 
+  /// A point in the flipped triangulation.
   struct Point {
     Index face;
-    std::array<double, 3> weight;
-    LayoutMap map;  ///< layout of the input face -> layout of the face
-    Index depth;
+    std::array<double, 3> weight;  ///< barycentric coordinates in the face
+    LayoutMap map;                 ///< layout of the input face -> layout of the face
+    Index depth;                   ///< number of flips on the descent
   };
-  /// A point of an input face, found in the flipped triangulation.
+  /// Finds a point of an input face in the flipped triangulation.
   Point locate(Index face, const std::array<double, 3>& weight) const;
 
+  /// A direction at a corner of the flipped triangulation.
   struct Direction {
-    Half corner;     ///< half-edge at whose start the direction leaves
-    Vec2 direction;  ///< in the layout of its face
-    bool mirrored;
+    Half corner;     ///< half-edge that starts at the corner
+    Vec2 direction;  ///< vector in the layout of the corner's face
+    bool mirrored;   ///< whether the layout of this face is mirrored relative to that of the input face
   };
-  /// A direction that leaves the start of half-edge `corner` of the input mesh into its face, found in the flipped
-  /// triangulation.
+  /// Finds, in the flipped triangulation, a direction that leaves the start of half-edge `corner` of the input mesh into its
+  /// face.
   Direction locate(Half corner, Vec2 direction) const;
 
  private:
   std::vector<Flip> flips_;
   std::vector<std::int32_t> first_;  ///< first flip that touches each input face
-  std::vector<std::int32_t> last_;   ///< 2 f + b: place b of flip f made the present face; -1: input face
+  std::vector<std::int32_t> last_;   ///< 2 f + b: the current face is place b of flip f; -1: it is an input face
 };
 
-/// Half-edge arrays whose faces are laid out in the plane one by one.
+/// Half-edge arrays of a triangulation. Each face has its own layout in the plane.
 class IntrinsicTriangulation {
  public:
-  /// The mesh itself. `mollify` adds the least length to every edge that leaves each face a margin in the triangle inequality
+  /// Copies the mesh. `mollify` adds to every edge the least length that gives each face a margin in the triangle inequality
   /// ([SC20] Sec. 4.5).
   IntrinsicTriangulation(const TriangleMesh& mesh, bool mollify, unsigned threads);
 
-  /// Flips edges until all are Delaunay. Returns false when a cap on the number of flips was met.
+  /// Flips edges until all are Delaunay.
+  /// @return false if the limit on the number of flips was reached
   bool flip_to_delaunay(const Progress& progress);
 
   HalfEdges half_edges() const { return {tail_, twin_, mirrored_}; }
-  /// Faces that the mesh dropped have no part in anything here.
+  /// Whether the mesh dropped a face. All functions here ignore such faces.
   bool is_dropped(Index face) const { return !dropped_.empty() && dropped_[face]; }
   const FlipHistory& history() const { return history_; }
-  /// Side h in the layout of its face, in units of the mesh.
+  /// Side h as a vector in the layout of its face, in units of the mesh.
   Vec2 side(Half h) const { return side_[h]; }
-  /// The three sides of a face.
+  /// The three sides of a face as vectors in its layout.
   const Vec2* sides(Index face) const { return side_.data() + 3 * static_cast<std::size_t>(face); }
   double length(Half h) const { return norm(side_[h]); }
   double area(Index face) const;
   /// Cotangent of the angle opposite side h.
   double cotangent(Half h) const;
-  /// Angle of the face at the start of h.
+  /// Angle of the face of h at the start of h.
   double angle(Half h) const;
   bool is_delaunay(Half h) const;
   /// Length added to every edge, in units of the mesh.
   double mollification() const { return mollification_; }
-  /// Faces of almost no height.
+  /// Faces with almost no height.
   std::vector<Index> thin_faces() const;
-  /// Whether the angles of all faces have a meaning: no side is so short beside its face that it has no direction.
+  /// Whether the angles of all faces are defined: no side is so short, relative to its face, that it has no direction.
   bool has_angles() const;
   std::size_t bytes() const;
 
  private:
-  /// Two faces (i, j, k), (j, i, m) in one layout: sides and the diagonal m k as vectors, and the crossing as in
-  /// `Flip`.
+  /// Two faces (i, j, k), (j, i, m) in one layout: sides and diagonal m k as vectors, and the crossing as in `Flip`.
   struct Quadrilateral {
     Vec2 jk, ki, im, mj, mk, turn;
     double beta, gamma;

@@ -17,10 +17,10 @@ using detail::HalfEdges;
 
 namespace {
 
-/// Edges up to this many times the rounding of a coordinate: where they are longer, the angles about a flat vertex sum to 2 pi
-/// to 1e-8 in any plane, since that is the square of what rounding turns an edge by.
+/// Edges in space up to this many times the rounding of a coordinate are contracted. At longer edges, the angles around a flat
+/// vertex sum to 2 pi to 1e-8 in any plane, because this error is the square of the angle by which rounding rotates an edge.
 constexpr double least_edge_in_space = 8192;
-/// Relative to the longest of the component, edges given by their lengths alone.
+/// Edges of a mesh of edge lengths are contracted up to this fraction of the longest edge of their component.
 constexpr double least_edge_by_length = 1e-15;
 
 void check_lengths(std::span<const Triangle> faces, std::span<const std::array<double, 3>> lengths) {
@@ -74,14 +74,15 @@ TriangleMesh TriangleMesh::from_positions(std::span<const Vec3> positions, std::
   return mesh;
 }
 
-/// @param contracted  per half-edge
+/// Contracts edges, and keeps positions of the remaining vertices.
+/// @param contracted  per half-edge, 1 for both halves of an edge to contract
 void TriangleMesh::contract(std::vector<std::uint8_t> contracted) {
   if (std::find(contracted.begin(), contracted.end(), 1) == contracted.end()) return;
   const std::vector<Index> tails_before(tails().begin(), tails().end()),
       input_before(input_of_vertex().begin(), input_of_vertex().end());
   topology_.contract(std::move(contracted));
   if (position_.empty()) return;
-  // Copies of a vertex that was split have positions of their own, each about the middle of its component.
+  // Copies of a split vertex have their own positions, each relative to the center of its component.
   std::vector<Index> before(input_of_vertex().size(), -1);
   for (std::size_t h = 0; h < tails().size(); ++h) {
     if (is_dropped(static_cast<Index>(h / 3))) continue;
@@ -103,7 +104,7 @@ Half TriangleMesh::kept_corner(Index face, int corner) const {
   const int stored = stored_corner(face, corner);
   if (!is_dropped(face)) return 3 * face + stored;
   const Half kept = topology_.stand_in(face)[stored];
-  if (kept < 0) throw InvalidArgument("face " + std::to_string(face) + " has no area, and no other face is beside it");
+  if (kept < 0) throw InvalidArgument("face " + std::to_string(face) + " has no area, and no face next to it has one");
   return kept;
 }
 
@@ -124,9 +125,9 @@ TriangleMesh TriangleMesh::from_edge_lengths(Index vertices, std::span<const Tri
     if (t < static_cast<Half>(h)) continue;
     const double a = mesh.length_[h], b = mesh.length_[t];
     if (std::abs(a - b) > 1e-9 * std::max(a, b))
-      throw InvalidGeometry("faces " + std::to_string(h / 3) + " and " + std::to_string(t / 3) +
-                            " give their common edge lengths " + detail::number(std::scalbn(a, exponent)) + " and " +
-                            detail::number(std::scalbn(b, exponent)) + "; they must be equal");
+      throw InvalidGeometry("faces " + std::to_string(h / 3) + " and " + std::to_string(t / 3) + " have lengths " +
+                            detail::number(std::scalbn(a, exponent)) + " and " +
+                            detail::number(std::scalbn(b, exponent)) + " for their common edge; they must be equal");
     mesh.length_[t] = a;
   }
   const std::span<const Index> part = mesh.topology_.parts();

@@ -17,7 +17,7 @@
 namespace ahm::trimesh {
 namespace {
 
-/// The layout with side 0 along x whose other sides have the given x components and height y.
+/// The layout with side 0 along the x axis, from the x components of the other sides and the height y.
 FaceLayout turned_to_x(double length, double x1, double x2, double y) {
   return {Vec2{length, 0}, Vec2{x1, y}, Vec2{x2, -y}};
 }
@@ -28,7 +28,7 @@ FaceLayout layout_of_positions(const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 s0 = b - a, s1 = c - b, s2 = a - c;
   const double length = norm(s0);
   if (!(length > 0)) return {Vec2{0, 0}, Vec2{norm(s1), 0}, Vec2{-norm(s2), 0}};
-  // The cross product of the two shorter sides is the most accurate.
+  // The cross product of the two shorter sides is the most accurate one.
   const double l1 = norm(s1), l2 = norm(s2);
   const double longest = std::max({length, l1, l2});
   const double area = norm(longest == length ? cross(s1, s2) : longest == l1 ? cross(s2, s0) : cross(s0, s1));
@@ -43,7 +43,7 @@ FaceLayout layout_of_lengths(double l0, double l1, double l2) {
   if (y < z) std::swap(y, z);
   if (x < y) std::swap(x, y);
   const double area = 0.5 * std::sqrt(std::max(0.0, (x + (y + z)) * (z - (x - y)) * (z + (x - y)) * (x + (y - z))));
-  // a + side 0 = b; c lies at distance l2 from a and l1 from b.
+  // The apex c lies at distance l2 from a and l1 from b.
   const double c = 0.5 * (l0 + (l2 - l1) * ((l2 + l1) / l0));
   return turned_to_x(l0, c - l0, -c, area / l0);
 }
@@ -94,7 +94,7 @@ Source TriangleMeshSurface::Impl::source(const FacePoint& point, Vec2 u) const {
     const Vec2 z = product(conj(u_here), offset);
     const double position[] = {mesh.length_unit() * z[0], mesh.length_unit() * (p.map.mirrored ? -z[1] : z[1])};
 
-    // Transport along the straight line to the corner: its direction has a known angle in the frame there.
+    // Transport along the straight line to the corner, which has a known angle in the frame there.
     const double full = triangulation.angle(h);
     const bool at_corner = !(norm(offset) > 1e-14 * size);
     const double within = at_corner ? 0.5 * full : std::clamp(angle_between(side[s], -offset), 0.0, full);
@@ -106,7 +106,8 @@ Source TriangleMeshSurface::Impl::source(const FacePoint& point, Vec2 u) const {
     Vec2 axis = product(u_here, conj(back));
     if (!forward) axis = conj(axis);
     axis = normalized(product(axis, unit(angle)));
-    // v is u turned left in the source's layout; every change of orientation on the way turns it right.
+    // v is u rotated to the left in the layout of the source. Each change of orientation in between makes this a rotation to
+    // the right.
     const bool reflects = p.map.mirrored == forward;
     const double axes[] = {axis[0], reflects ? axis[1] : -axis[1], axis[1], reflects ? -axis[0] : axis[0]};
     source.add(Vertex(k), p.weight[s], position, axes);
@@ -148,7 +149,7 @@ SurfaceSource TriangleMeshSurface::source_in_face(const FacePoint& point, const 
   return {impl_->source(point, u), impl_->mesh.has_positions() ? position(point) : Vec3{}, frame, std::nullopt};
 }
 
-/// Looks through the fans of all vertices of `from`; only a split mesh has more than one.
+/// Searches the faces around all vertices of `from`. Only in a split mesh does a row have several vertices.
 std::optional<TriangleMeshSurface::Impl::Edge> TriangleMeshSurface::Impl::edge(Row from, Row to) const {
   const HalfEdges edges = mesh.topology().half_edges();
   const auto ends = rows.vertices(to);
@@ -179,7 +180,7 @@ SurfaceSource TriangleMeshSurface::source_on_edge(const EdgePoint& edge, const s
 
 FacePoint TriangleMeshSurface::face_point(const EdgePoint& edge) const {
   const std::optional<Impl::Edge> place = impl_->edge(edge.from, edge.to);
-  if (!place) return Surface::face_point(edge);  // contracted, or no edge
+  if (!place) return Surface::face_point(edge);  // contracted, or not an edge
   FacePoint point{place->face, {0, 0, 0}};
   point.barycentric[place->from] = 1 - edge.t;
   point.barycentric[place->to] = edge.t;
@@ -197,7 +198,7 @@ Vec2 coordinates(const LogMap& map, Index vertex) {
 
 /// A face laid out in the plane, with the map at its corners.
 struct MappedFace {
-  Vec2 side[3];  ///< in world units
+  Vec2 side[3];  ///< vectors of the sides, world units
   Vec2 phi[3]{};
 
   MappedFace(const TriangleMesh& mesh, const Vec2* sides) {
@@ -209,14 +210,14 @@ struct MappedFace {
     const double mapped = norm(phi[(s + 1) % 3] - phi[s]), length = norm(side[s]);
     return mapped <= 1.5 * length && length <= 1.5 * mapped;
   }
-  /// Whether the map is nearly isometric here. It turns faces over where it blends the two sides of a cut.
+  /// Whether the map is nearly isometric here. Where it blends the two sides of a cut, it turns faces over.
   bool is_sound(bool orientable) const {
     return keeps(0) && keeps(1) && keeps(2) && (!orientable || cross(phi[1] - phi[0], phi[2] - phi[0]) > 0);
   }
-  /// Puts the third corner where the shape of the face asks for it, to the left or right of side s.
+  /// Places the third corner so that the face keeps its shape, to the left or right of side s.
   void follow(int s, bool left) {
     const Vec2 a = phi[s], b = phi[(s + 1) % 3], along = normalized(b - a);
-    // From the middle of the side.
+    // The apex relative to the middle of the side.
     const Vec2 apex = product(conj(normalized(side[s])), -0.5 * side[s] - side[(s + 2) % 3]);
     phi[(s + 2) % 3] = 0.5 * (a + b) + product(along, left ? apex : conj(apex));
   }
@@ -274,7 +275,7 @@ namespace {
 
 void measure_edges(const IntrinsicTriangulation& triangulation, double length_unit, MeshDetails& report) {
   double shortest = HUGE_VAL, longest = 0;
-  std::vector<double> longest_at(triangulation.half_edges().tail.size(), 0.0);  // per vertex, of which there are fewer
+  std::vector<double> longest_at(triangulation.half_edges().tail.size(), 0.0);  // per vertex; some are unused
   for (Half h = 0; h < triangulation.half_edges().size(); ++h) {
     if (triangulation.is_dropped(h / 3)) continue;
     const double length = triangulation.length(h);
@@ -291,8 +292,8 @@ void measure_edges(const IntrinsicTriangulation& triangulation, double length_un
   report.longest_edge = longest * length_unit;
 }
 
-/// The triangulation the graph is built from. Sides without a direction, which only flips of faces without area can make
-/// once edges without length are contracted, are the only reason to change a length.
+/// The triangulation from which the graph is built. Lengths are changed only if flips do not end, or leave a side without
+/// direction. Once edges without length are contracted, only flips of faces without area can make such a side.
 IntrinsicTriangulation triangulate(const TriangleMesh& mesh, const MeshOptions& options, MeshDetails& report) {
   IntrinsicTriangulation triangulation(mesh, false, options.threads);
   measure_edges(triangulation, mesh.length_unit(), report);
@@ -321,10 +322,10 @@ exact::PolyhedralSurface polyhedron(const TriangleMesh& mesh) {
   return {mesh.topology().half_edges(), [&](Index face) { return mesh.layout(face); }, mesh.corners()};
 }
 
-/// The same without the faces that were dropped.
+/// The polyhedral surface without dropped faces.
 exact::PolyhedralSurface polyhedron_of_kept(const TriangleMesh& mesh) {
   const HalfEdges edges = mesh.topology().half_edges();
-  std::vector<Half> place(edges.tail.size(), -1), corners;  // numbers among the half-edges kept
+  std::vector<Half> place(edges.tail.size(), -1), corners;  // numbers of the half-edges that are kept
   std::vector<Index> kept;
   for (Index f = 0; f < edges.size() / 3; ++f) {
     if (mesh.is_dropped(f)) continue;
@@ -381,7 +382,7 @@ exact::MeshPoint TriangleMeshSurface::flat_point_in_face(const FacePoint& point)
 Surface::Reason TriangleMeshSurface::missing_vertex_reason(Row row) const {
   const std::vector<Index>& used = impl_->face_rows;
   if (std::find(used.begin(), used.end(), row.index) == used.end()) return Surface::missing_vertex_reason(row);
-  return {"row_without_area", "lies in faces without area alone", "choose another one"};
+  return {"row_without_area", "lies only in faces without area", "choose another one"};
 }
 
 Report TriangleMeshSurface::report() const {

@@ -18,7 +18,7 @@ Corner reference_corner(const TriangleMesh& mesh, const HalfEdges& edges, Index 
   return edges.rightmost({mesh.corners()[vertex], true});
 }
 
-/// The reference direction found in the triangulation: its corner, and the angle from the right side of that corner.
+/// The reference direction in the intrinsic triangulation: its corner, and its angle from the right side of that corner.
 struct Reference {
   Corner corner;
   double angle = 0;
@@ -36,24 +36,25 @@ Reference find_reference(const TriangleMesh& mesh, const HalfEdges& input, const
   return {at, std::clamp(at.forward ? turned : -turned, 0.0, triangulation.angle(at.half))};
 }
 
-/// Positions are known to this many roundings of a coordinate: of three coordinates, after a few sums.
+/// Assumed error of positions, in rounding errors of a coordinate: three coordinates after a few sums.
 constexpr double roundings = 8;
-/// Total uncertainties below this cannot be told from curvature, and need not be: the error they make is as small.
+/// Smaller total uncertainties are ignored. They cannot be distinguished from curvature, and cause errors of the same size.
 constexpr double least_uncertainty = 1e-10;
 
-/// Angles of the triangulation's faces, per corner.
+/// Angles of the faces of the intrinsic triangulation, per corner.
 using CornerAngles = detail::UnsetVector<double>;
 
-/// The corners of the triangulation about one vertex, and what their angles are in its tangent space.
+/// The corners of the intrinsic triangulation around one vertex, and their angles in its tangent space.
 class Fan {
  public:
-  /// @param angles  filled at these corners
+  /// @param angles  output: the angles at these corners
   Fan(const HalfEdges& edges, const IntrinsicTriangulation& triangulation, Corner start, CornerAngles& angles)
       : edges_(edges), triangulation_(triangulation), start_(edges.rightmost(start)), angles_(angles) {
     closed_ = for_each([&](Corner c) { angles_[c.half] = triangulation_.angle(c.half); });
   }
 
-  /// Calls visit(corner) counter-clockwise; returns whether the fan is closed.
+  /// Calls visit(corner) counter-clockwise.
+  /// @return whether the fan is closed
   template <class Visit>
   bool for_each(const Visit& visit) const {
     for (Corner c = start_;;) {
@@ -65,7 +66,7 @@ class Fan {
 
   Corner start() const { return start_; }
 
-  /// What all angles are multiplied by, and those of single corners instead, which are appended.
+  /// The factor of all angles. Appends uncertain corners, which have their own factors instead, to `mended`.
   double find_scale(double rounding, std::vector<std::pair<Half, double>>& mended) const {
     if (!closed_) return 1.0;
     double sum = 0, uncertainty = 0;
@@ -95,7 +96,7 @@ class Fan {
   bool closed_ = false;
 };
 
-/// Sets the angles of the edges of one vertex.
+/// Sets the angles of the edges at one vertex.
 void set_angles(const HalfEdges& edges, const CornerAngles& angles, const Reference& reference, Index v,
                 VertexFrames& frames) {
   const Corner start = frames.start[v];
@@ -116,25 +117,25 @@ void set_angles(const HalfEdges& edges, const CornerAngles& angles, const Refere
   }
 }
 
-/// Normals of faces in space that rounding of their corners turns by no more than this are certain.
+/// Normals of faces in space are reliable if rounding of their corners rotates them by at most this angle.
 constexpr double certain_normal = 1e-6;
 
-/// The part of an arbitrary axis that is perpendicular to a unit vector.
+/// The unit vector of an axis projected perpendicular to a unit vector.
 Vec3 axis_across(const Vec3& n) {
   const Vec3 axis = std::abs(n[0]) < 0.9 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
   const Vec3 across = axis - dot(axis, n) * n;
   return 1 / norm(across) * across;
 }
 
-/// A face about a vertex of the input mesh, in space.
+/// A face at a vertex of the input mesh, in space.
 struct SpatialFace {
   Vec3 first, second;  ///< sides from the vertex, counter-clockwise
-  Vec3 normal;         ///< their cross product
-  double area;         ///< its length
-  double angle;        ///< at the vertex
+  Vec3 normal;         ///< cross product of the sides
+  double area;         ///< length of `normal`, twice the area of the face
+  double angle;        ///< angle of the face at the vertex
 };
 
-/// The faces about a vertex, counter-clockwise.
+/// The faces around a vertex, counter-clockwise.
 struct SpatialFan {
   std::vector<SpatialFace> faces;
   bool is_closed = false;
@@ -161,8 +162,8 @@ struct SpatialFan {
   }
 };
 
-/// The mean of the face normals weighted by angle: of faces whose normals rounding leaves alone or, where there are none, of
-/// all. Zero where they cancel.
+/// The mean of the face normals, weighted by angle, over the faces with reliable normals. If there are none, over all faces.
+/// Zero if the normals cancel.
 Vec3 mean_normal(const SpatialFan& fan, double rounding) {
   Vec3 sum{0, 0, 0}, of_all{0, 0, 0};
   for (const SpatialFace& face : fan.faces) {
@@ -175,9 +176,9 @@ Vec3 mean_normal(const SpatialFan& fan, double rounding) {
   return norm(sum) > 1e-12 ? sum : of_all;
 }
 
-/// The normal is the mean of the face normals; x makes the projected edges lie as close as possible to where the tangent
-/// space has them.
-/// @param fan  of the vertex
+/// The normal is the mean of the face normals. The x axis brings the projected edges as close as possible to their angles in
+/// the tangent space.
+/// @param fan  faces around the vertex
 Frame frame_in_space(const TriangleMesh& mesh, const SpatialFan& fan, Index v) {
   const Vec3 sum = mean_normal(fan, mesh.rounding(Vertex(v)));
   Vec3 reference{0, 0, 0};
@@ -186,7 +187,7 @@ Frame frame_in_space(const TriangleMesh& mesh, const SpatialFan& fan, Index v) {
     if (angle_sum == 0) reference = face.first;
     angle_sum += face.angle;
   }
-  // Where the faces cancel or the reference edge stands on the plane, any axes will do.
+  // If the normals cancel, or the reference edge is perpendicular to the plane, any axes will do.
   const double length = norm(sum), reach = norm(reference);
   const Vec3 normal = length > 1e-12 ? 1 / length * sum
                       : reach > 0    ? axis_across(1 / reach * reference)
@@ -270,14 +271,14 @@ std::vector<Frame> frames_in_space(const TriangleMesh& mesh, unsigned threads) {
 
 namespace {
 
-/// Weights up to this are rounding (diagonals of cocircular quadrilaterals) and make no edge.
+/// Weights up to this are rounding errors (diagonals of cocircular quadrilaterals) and are set to 0.
 constexpr double least_weight = 1e-13;
 
-/// Larger weights make the heat at both ends equal to 1e-4 anyway, and cost the solver the digits that the sum of a row
-/// needs.
+/// With larger weights the heat at both ends is equal to 1e-4 in any case, and the solver loses the digits that the sum of a
+/// row needs.
 constexpr double largest_weight = 1e4;
 
-/// Of a sliver on the boundary, so that vertices in nothing else stay joined.
+/// Least weight of a sliver on the boundary; keeps vertices connected that have no other faces.
 constexpr double least_conductance = 1e-3;
 
 class Rows {
@@ -296,13 +297,13 @@ class Rows {
     if (clamp) find_slivers();
   }
 
-  /// (cot alpha + cot beta) / 2, one of them on the boundary.
+  /// (cot alpha + cot beta) / 2; on the boundary there is only one angle.
   double cotangents(Half side) const {
     const Half t = edges_.twin[side];
     return t >= 0 ? half_cotangents_[side] + half_cotangents_[t] : half_cotangents_[side];
   }
 
-  /// What a face gives to the weight of its side: half the cotangent of the angle across, but in a sliver.
+  /// Contribution of a face to the weight of its side: half the cotangent of the opposite angle, except in slivers.
   double from_face(Half side) const {
     const Half base = base_.empty() ? -1 : base_[static_cast<std::size_t>(side / 3)];
     if (base < 0) return half_cotangents_[side];
@@ -311,7 +312,7 @@ class Rows {
     return std::max(0.25 / half_cotangents_[third], least_conductance);
   }
 
-  /// w_ij; no less than what counts, so that squares and rectangles have no diagonal in the operators.
+  /// The weight w_ij; 0 within rounding, so that squares and rectangles have no diagonals in the operators.
   double weight(Half side) const {
     const Half t = edges_.twin[side];
     double w = from_face(side) + (t >= 0 ? from_face(t) : 0);
@@ -319,9 +320,9 @@ class Rows {
     return std::abs(w) > least_weight ? w : 0;
   }
 
-  /// An edge from a vertex to itself is left out. On a flat surface it contributes nothing: its two logarithms are
-  /// opposite, and its holonomy is the identity. Elsewhere its sole effect would be a damping of vectors at a vertex
-  /// too coarse to resolve them.
+  /// Whether a side is an edge of the graph. An edge from a vertex to itself is left out. On a flat surface it contributes
+  /// nothing: its two logarithms are opposite, and its holonomy is the identity. Elsewhere it would only damp vectors at a
+  /// vertex too coarse to resolve them.
   bool is_edge(Half side) const { return edges_.tail[side] != edges_.head(side); }
 
   /// Calls visit(side, from_tail, forward) for every edge of the graph that leaves the vertex, counter-clockwise.
@@ -346,8 +347,8 @@ class Rows {
       const double length = triangulation_.length(side);
       g.logs[2 * at] = length * u_ij[0];
       g.logs[2 * at + 1] = length * u_ij[1];
-      // The direction of the edge goes to itself: u_ji -> -u_ij, turning the same way or, between frames of opposite
-      // orientation, the other way.
+      // Transport takes the direction of the edge to itself, u_ji -> -u_ij. Between frames of opposite orientation it is a
+      // reflection.
       const bool reflects = forward != frames_.forward(edges_, side, !from_tail);
       const Vec2 R = reflects ? -product(u_ij, u_ji) : -product(u_ij, conj(u_ji));
       if (g.kind == TransportKind::rotation2) {
@@ -361,7 +362,7 @@ class Rows {
     });
   }
 
-  /// Edges of the triangulation: mean length, and what was left out.
+  /// Computes the mean edge length, and counts edges left out and weights changed.
   void summarize(CsrGraphData& g, MeshDetails& report) const {
     double sum = 0;
     detail::ComponentLengths lengths(g.masses.size());
@@ -380,10 +381,11 @@ class Rows {
   }
 
  private:
-  /// Finds the slivers on the boundary that no flip removes: the weight of their outer side is negative. Setting it to zero alone
-  /// would leave the weights of the other two sides, which it balances: heat would run along the boundary as if it had no
-  /// length. A sliver conducts along its outer side only: of a strip of that length, the height of the sliver over either part.
-  /// What it no longer gives to its other sides may show the next one.
+  /// Finds the slivers on the boundary that no flip removes: the weight of their outer side is negative. Setting only this
+  /// weight to 0 would leave the weights of the other two sides, which it balances. Heat would then run along the boundary as
+  /// if it had no length. A sliver therefore conducts only along its outer side, like a strip: the weight of each other side is
+  /// half the height of the sliver over the length of that side's part of the outer side. Without its contributions to other
+  /// sides, its neighbors may be slivers, too.
   void find_slivers() {
     base_.assign(static_cast<std::size_t>(edges_.size() / 3), -1);
     std::vector<Half> outer;
@@ -403,13 +405,13 @@ class Rows {
   HalfEdges edges_;
   const VertexFrames& frames_;
   bool clamp_;
-  detail::UnsetVector<double> half_cotangents_;  ///< of the angles across the sides
-  detail::UnsetVector<Vec2> units_;              ///< directions of directed edges
-  std::vector<Half> base_;                       ///< of the faces that are slivers: the outer side; -1: of the others
+  detail::UnsetVector<double> half_cotangents_;  ///< half the cotangents of the angles opposite the sides
+  detail::UnsetVector<Vec2> units_;  ///< unit vectors of directed edges in the frames of their start vertices
+  std::vector<Half> base_;           ///< per face: outer side of a sliver; -1: not a sliver
 };
 
-/// Vertices whose faces have no area still need a mass: where it is below 1e-14 of the square of their longest edge, it
-/// becomes a hundredth of that.
+/// Vertices need a mass even if their faces have no area. A mass below 1e-14 of the square of the longest edge at the vertex
+/// becomes 1 % of that square.
 void mend_masses(const IntrinsicTriangulation& triangulation, std::vector<double>& masses) {
   const HalfEdges edges = triangulation.half_edges();
   std::vector<double> longest(masses.size(), 0.0);

@@ -1,4 +1,4 @@
-// Every experiment at toy size, and what must hold of its numbers at any size.
+// All experiments at toy size, and laws of their numbers that hold at any size.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,7 +12,7 @@
 namespace ahm::bench {
 namespace {
 
-/// The table of an experiment at toy size, made once.
+/// The table of an experiment at toy size; each experiment runs once.
 const Table& toy(std::string_view name) {
   static std::map<std::string_view, Table> made;
   if (const auto at = made.find(name); at != made.end()) return at->second;
@@ -34,7 +34,7 @@ TEST(MazeExperiment, AffineHeatIsTheIdentity) {
   const Table& table = toy("mazes");
   for (const char* method : affine)
     EXPECT_LE(table.where("method", method).largest("largest / diameter"), 1e-11) << method;
-  EXPECT_GT(table.smallest("longest path / diameter"), 1.5);  // or it is no maze
+  EXPECT_GT(table.smallest("longest path / diameter"), 1.5);  // otherwise it is no maze
 }
 
 TEST(DistortionExperiment, AffineHeatHasNoneOnTheFlatGrid) {
@@ -107,7 +107,7 @@ TEST(CutLocusExperiment, TheBandIsAsManyEdgesWideAtAnyResolution) {
     const Table rows = table.where("edges from cut", edges);
     EXPECT_LT(rows.largest("mean / radius"), 1.25 * rows.smallest("mean / radius")) << edges;
   }
-  const Table finest = table.where("around", "32");  // away from the band the error falls like the heat across it
+  const Table finest = table.where("around", "32");  // away from the band the error decays like the heat across it
   for (int edges = 2; edges <= 12; edges += 2)
     EXPECT_LT(finest.where("edges from cut", std::to_string(edges)).mean("mean / radius"), std::exp(-0.9 * edges) * 4)
         << edges;

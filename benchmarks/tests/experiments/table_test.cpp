@@ -77,7 +77,7 @@ TEST(Surface, KnowsExactMapsAndPathsOfEdges) {
   EXPECT_EQ(square.nearest({0.9, 0.8, 0}), 2);
   const std::vector<double> plane = lengths(square.plane_log(1)), paths = square.path_lengths(1);
   EXPECT_NEAR(plane[3], std::sqrt(2.0), 1e-15);
-  EXPECT_NEAR(paths[3], 2, 1e-15);  // round the corner: the diagonal joins the other two
+  EXPECT_NEAR(paths[3], 2, 1e-15);  // around the corner: the diagonal joins the other two vertices
   const Surface sphere("sphere", split_icosphere(12));
   const std::vector<double> angles = lengths(sphere.sphere_log(0));
   EXPECT_NEAR(*std::ranges::max_element(angles), std::numbers::pi, 1e-12);

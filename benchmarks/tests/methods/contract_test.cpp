@@ -1,4 +1,4 @@
-// What every method on a graph must keep, whatever its accuracy.
+// Laws of all methods on a graph, independent of their accuracy.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -55,7 +55,8 @@ TEST_P(BaselineContract, IsFiniteAndZeroAtTheSource) {
     if (!result.coordinates.empty())
       ASSERT_EQ(result.coordinates.size(), data.masses.size() * static_cast<std::size_t>(data.dimension));
     for (double x : result.coordinates) ASSERT_TRUE(std::isfinite(x));
-    // On a curved graph heat that comes back to the source turned moves it a little in the affine heat method.
+    // On a curved graph, heat that returns to the source is rotated, which moves the source slightly in the affine heat
+    // method.
     if (GetParam().name != "AffineHeat") EXPECT_NEAR(result.distance[7], 0, 1e-12);
   }
 }

@@ -18,14 +18,14 @@ using methods::Result;
 using trimesh::TriangleMesh;
 using trimesh::TriangleMeshSurface;
 
-/// A time that drowns the part of the error which depends on how the edges lie: at t_coef = 1 it does not shrink with h
-/// and hides the order.
+/// A diffusion time at which the error due to the layout of edges is small. At t_coef = 1 that part does not decrease with
+/// h and hides the order.
 constexpr double long_time = 16;
 
 Method on_graph(const TriangleMeshSurface& surface) { return methods::heat_distance(surface.graph(), long_time); }
 Method on_faces(const TriangleMeshSurface& surface) { return methods::heat_distance(surface.mesh(), long_time); }
 
-/// Root mean square error of distances from the middle of a square, away from its border.
+/// Root mean square error of distances from the center of a square, away from its border.
 template <class Make>
 double square_error(Index side, const Make& make) {
   const Mesh mesh = flat_square(side);
@@ -113,7 +113,7 @@ TEST(ExactDistance, UnfoldsTheCube) {
   const Result result = methods::exact_distance(corners, faces)->solve(0);
   for (Index i = 0; i < 8; ++i) {
     const double axes = corners[i][0] + corners[i][1] + corners[i][2];
-    // To the opposite corner across two faces: the diagonal of a rectangle 1 x 2.
+    // To the opposite corner across two faces: the diagonal of a 1 x 2 rectangle.
     EXPECT_NEAR(result.distance[i], axes == 3 ? std::sqrt(5.0) : std::sqrt(axes), 1e-14);
   }
 }

@@ -1,5 +1,5 @@
 /// \file
-/// What a log map on a flat mesh in the xy plane should be.
+/// Exact log maps and errors on a flat mesh in the xy plane.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace ahm::test {
 
-/// Exact log map of a flat mesh from a vertex, in its frame.
+/// Exact log map of a flat mesh from a vertex, in the frame of that vertex.
 inline Vec2 exact_log(const Mesh& mesh, const TangentGraph& graph, Index source, Index vertex) {
   const Frame frame = *graph.frame(source);
   const Vec3 offset = minus(mesh.positions[vertex], mesh.positions[source]);
@@ -24,13 +24,13 @@ inline double from_border(const Mesh& mesh, Index i) {
   return std::min({p[0], p[1], 1 - p[0], 1 - p[1]});
 }
 
-/// Distance in the plane.
+/// Distance of two vertices in the plane.
 inline double plane_distance(const Mesh& mesh, Index i, Index j) {
   const auto &p = mesh.plane[i], &q = mesh.plane[j];
   return std::hypot(p[0] - q[0], p[1] - q[1]);
 }
 
-/// Angle between a method's direction and the exact one, radians.
+/// Angle between the directions of a method and of the exact map, radians.
 inline double angle_error(const Mesh& mesh, const TangentGraph& graph, const methods::Result& result, Index source,
                           Index vertex) {
   const auto exact = exact_log(mesh, graph, source, vertex);

@@ -1,4 +1,4 @@
-// DEM, VHM_log, SEM and the reference operator: planar limits and known artefacts.
+// DEM, VHM_log, SEM and the reference operator: planar limits and known artifacts.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,10 +25,10 @@ using std::numbers::pi;
 using trimesh::TriangleMeshSurface;
 
 struct PlanarErrors {
-  double angle, distance;  ///< root mean square
+  double angle, distance;  ///< root mean square errors
 };
 
-/// Errors of a map from the middle of a jittered square.
+/// Errors of a map from the center of a jittered square.
 PlanarErrors planar_errors(const std::function<Method(const TangentGraph&)>& make) {
   const Mesh mesh = flat_square(61);
   const auto surface = TriangleMeshSurface::build(mesh.positions, mesh.faces);
@@ -63,11 +63,11 @@ TEST(DiscreteExponential, IsExactOnEveryFlatGraph) {
 }
 
 TEST(DiscreteExponential, IsExactAlongAStraightLineOfEdges) {
-  // From a vertex of the icosahedron its edges are great circles, and Dijkstra's path follows them.
+  // Edges at a vertex of the icosahedron are great circles, which Dijkstra's path follows.
   const Index parts = 16;
   const Mesh mesh = icosphere(parts);
   const auto surface = TriangleMeshSurface::build(mesh.positions, mesh.faces);
-  const double edge = std::acos(1 / std::sqrt(5.0));  // between neighbouring vertices of the icosahedron
+  const double edge = std::acos(1 / std::sqrt(5.0));  // between neighboring vertices of the icosahedron
   for (auto turn : {methods::FrameTurn::along_path, methods::FrameTurn::in_space}) {
     const Result result = methods::discrete_exponential(surface.graph(), {.turn = turn})->solve(0);
     Index corners = 0;
@@ -98,13 +98,13 @@ TEST(DiscreteExponential, TurnsInSpaceOnlyWhereFramesAreKnown) {
   EXPECT_THROW(methods::discrete_exponential(graph, {.turn = methods::FrameTurn::in_space}), InvalidArgument);
 }
 
-/// Root mean square distance between a map of a rolled square and the plane it was rolled from.
+/// Root mean square distance between a map of a rolled square and the plane.
 double rolled_error(Index side, methods::FrameTurn turn) {
   const Mesh mesh = rolled_square(side, 0.3);
   const auto surface = TriangleMeshSurface::build(mesh.positions, mesh.faces);
   const Index source = nearest(mesh, {0.5, 0.5});
   const Result result = methods::discrete_exponential(surface.graph(), {.turn = turn})->solve(source);
-  double c = 0, s = 0, sum = 0;  // the turn of the frame is fitted
+  double c = 0, s = 0, sum = 0;  // the rotation of the frame is fitted
   auto each = [&](auto use) {
     for (Index i = 0; i < mesh.vertices(); ++i)
       use(mesh.plane[i][0] - mesh.plane[source][0], mesh.plane[i][1] - mesh.plane[source][1], result.coordinates[2 * i],
@@ -143,7 +143,7 @@ double sphere_error(Index parts, double reach, const std::function<Method(const 
 }
 
 TEST(DiscreteExponential, DoesNotConvergeOnTheSphere) {
-  // Paths of edges enclose an area with the geodesic that does not shrink with h, and turn the frame by it.
+  // An edge path encloses an area with the geodesic that does not decrease with h, and it turns the frame by that area.
   auto make = [](const TangentGraph& g) { return methods::discrete_exponential(g); };
   EXPECT_GT(sphere_error(32, pi / 2, make), 0.7 * sphere_error(16, pi / 2, make));
 }
@@ -155,8 +155,7 @@ TEST(DiscreteExponential, DistortsMoreWithDistance) {
 
 // VHM_log.
 
-/// Largest sine of the angle between a map and the identity within half of the way from the middle of a lattice to its
-/// border.
+/// Largest sine of the angle between a map and the identity, up to halfway from the center of a lattice to its border.
 double lattice_error(const grid::GridGraph& lattice, const std::function<Method(const TangentGraph&)>& make) {
   const int d = lattice.dimension();
   std::vector<Index> middle;
@@ -189,8 +188,8 @@ std::vector<grid::GridGraph> lattices() {
 }
 
 TEST(VectorHeatLog, HasTheDirectionsOfALatticeExactly) {
-  // There sum_j w e_j k(j, x) is, up to a factor, the inverse transform of the gradient of log A, which is x times a
-  // number. At this time heat falls by e^2 and more per edge, and little of it comes back from the border.
+  // On a lattice sum_j w e_j k(j, x) is, up to a factor, the inverse transform of the gradient of log A: x times a number.
+  // At this diffusion time heat falls by at least e^2 per edge, so little of it returns from the border.
   for (const auto& lattice : lattices())
     EXPECT_LT(
         lattice_error(lattice, [](const TangentGraph& g) { return methods::vector_heat_log(g, {.t_coef = 0.1}); }),
@@ -199,7 +198,7 @@ TEST(VectorHeatLog, HasTheDirectionsOfALatticeExactly) {
 }
 
 TEST(VectorHeatLog, DistortsEvenThePlane) {
-  // Figs. 6 and 26: off lattices the star of the source weighs its directions unevenly, for all vertices alike.
+  // Fig. 6 and 26: off lattices the star of the source weights directions unevenly, equally for all vertices.
   const PlanarErrors vhm = planar_errors([](const TangentGraph& g) { return methods::vector_heat_log(g); });
   EXPECT_GT(vhm.angle, 1e-3);
 }
@@ -209,7 +208,7 @@ TEST(VectorHeatLog, IsHalfAnEdgeShortAsPublished) {
   const auto surface = TriangleMeshSurface::build(mesh.positions, mesh.faces);
   const Result published = methods::vector_heat_log(surface.graph())->solve(0),
                radial = methods::vector_heat_log(surface.graph(), {.radial_at_source = true})->solve(0);
-  // On six equal edges the two differ by the half edges at the source alone.
+  // On six equal edges the two results differ only by half an edge at the source.
   for (Index i = 1; i < mesh.vertices(); ++i) ASSERT_NEAR(radial.distance[i] - published.distance[i], 0.5, 1e-9) << i;
 }
 
@@ -220,7 +219,7 @@ TEST(VectorHeatLog, ConvergesOnTheSphere) {
 }
 
 TEST(VectorHeatLog, HasTheDistanceOfTheSignedHeatMethod) {
-  // The two are one method near a point but for the source's own edges.
+  // Near a point the two methods differ only at the edges of the source.
   const CsrGraph graph(sphere_graph(300));
   const Result vhm = methods::vector_heat_log(graph, {.radial_at_source = true})->solve(3),
                shm = methods::SignedHeat(graph).solve(3);
@@ -230,7 +229,7 @@ TEST(VectorHeatLog, HasTheDistanceOfTheSignedHeatMethod) {
 // SEM.
 
 TEST(SmoothedExponential, HasTheDirectionsOfALatticeExactly) {
-  // As VHM_log: the gradient over the star is the same sum.
+  // As for VHM_log: the gradient over the star is the same sum.
   for (const auto& lattice : lattices())
     EXPECT_LT(lattice_error(lattice, [](const TangentGraph& g) { return methods::smoothed_exponential(g, 0.1); }), 1e-8)
         << "d = " << lattice.dimension();
@@ -262,7 +261,7 @@ TEST(ReferenceOperator, AgreesWithTheElimination) {
                    eliminated = methods::affine_heat(graph, variant)->solve(5);
       double largest = 0;
       for (double d : direct.distance) largest = std::max(largest, d);
-      // At the source itself the vector is 0, where the paper has the mean of what heat brings back.
+      // At the source the vector is 0. The paper has the mean of the heat that returns there.
       const auto d = static_cast<std::size_t>(graph.dimension());
       for (std::size_t i = 0; i < direct.coordinates.size(); ++i)
         ASSERT_NEAR(eliminated.coordinates[i], i / d == 5 ? 0 : direct.coordinates[i], 1e-11 * largest)

@@ -16,7 +16,7 @@ std::vector<FlatGraph> flat_graphs() {
   return {planar_triangulation(20), planar_triangulation(20, TransportKind::block, true), lattice3(7), line_graph(30)};
 }
 
-/// Components of a vector of the ambient R^d in the frame of a vertex.
+/// Components, in the frame of a vertex, of a vector of the ambient R^d.
 Eigen::VectorXd in_frame(const FlatGraph& g, Index i, const Eigen::VectorXd& vector) {
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   return Eigen::Map<const RowMajor>(&g.frames[i * g.dimension * g.dimension], g.dimension, g.dimension) * vector;

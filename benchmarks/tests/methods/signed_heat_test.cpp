@@ -1,4 +1,4 @@
-// SHM: distances to curves with a sign.
+// SHM: signed distances to curves.
 #include "methods/signed_heat.hpp"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ TEST(SignedHeat, IsExactForAStraightLineInThePlane) {
   const Mesh mesh = flat_square(side);
   const auto surface = trimesh::TriangleMeshSurface::build(mesh.positions, mesh.faces, {.intrinsic_delaunay = false});
   const methods::SignedHeat shm(surface.graph());
-  // A broken line counts as a whole one, on either of its sides and beyond its ends.
+  // The distance is that of a whole line on both sides of a broken line and beyond its ends.
   for (const auto& [first, last] : {std::pair{0, 30}, std::pair{10, 20}}) {
     const auto f = shm.signed_distance(stroke_source(surface.graph(), middle_row(side, first, last)));
     for (Index i = 0; i < mesh.vertices(); ++i) ASSERT_NEAR(f[i], height(mesh, i), 1e-10);
@@ -64,7 +64,7 @@ TEST(SignedHeat, ChangesSignWithTheDirectionOfTheCurve) {
   for (std::size_t i = 0; i < f.size(); ++i) ASSERT_NEAR(f[i], -g[i], 1e-10);
 }
 
-/// A ring of edges of a hexagon, counter-clockwise about its middle.
+/// A ring of edges of a hexagon, counter-clockwise around its center.
 std::vector<Vertex> ring(const Mesh& mesh, Index radius) {
   std::vector<std::pair<double, Index>> around;
   for (Index i = 0; i < mesh.vertices(); ++i) {
@@ -85,7 +85,7 @@ TEST(SignedHeat, IsPositiveInsideACounterClockwiseLoop) {
   const auto surface = trimesh::TriangleMeshSurface::build(mesh.positions, mesh.faces);
   const auto f = methods::SignedHeat(surface.graph())
                      .signed_distance(stroke_source(surface.graph(), ring(mesh, 10), {.closed = true}));
-  // The distance from a hexagon's middle to its sides; heat rounds its corners by a few edges.
+  // Distance from the center of a hexagon to its sides. Diffusion rounds its corners by a few edges.
   EXPECT_NEAR(f[0], 10 * std::sqrt(0.75), 1.0);
   for (Index i = 0; i < mesh.vertices(); ++i) {
     const double r = plane_distance(mesh, 0, i);

@@ -27,7 +27,7 @@ std::vector<double> AnySolver::coordinates(std::span<const Vertex> sources,
   DiffusionOptions heat = solver_->options().diffusion();
   heat.check_graph = false;  // the solver's graph is checked
   std::vector<double> result = local_coordinates(solver_->graph(), starts, regions, heat);
-  // Where heat dies on its way, the solver marches on.
+  // Where heat decays to zero before it covers the region, the solver maps the whole surface, with the march where needed.
   auto first = result.begin();
   for (std::size_t s = 0; s < sources.size(); ++s) {
     const auto end = first + 2 * std::ssize(regions[s]);
@@ -41,7 +41,7 @@ std::vector<double> AnySolver::coordinates(std::span<const Vertex> sources,
 std::vector<double> AnySolver::coordinates_of_whole(std::span<const Vertex> sources,
                                                     std::span<const std::span<const Vertex>> regions,
                                                     std::span<const double> reach) const {
-  constexpr std::size_t block_size = 16;  // maps kept at the same time
+  constexpr std::size_t block_size = 16;  // maps in memory at the same time
   std::vector<double> result;
   for (std::size_t first = 0; first < sources.size(); first += block_size) {
     const std::size_t count = std::min(block_size, sources.size() - first);
@@ -72,7 +72,7 @@ double AnySolver::longest_corner_distance(const FaceList& faces) const {
   for (exact::Half h = 0; h < 3 * flat.surface.face_count(); ++h) side = std::max(side, flat.surface.record(h).length);
   std::size_t corners = 3;
   for (std::size_t f = 0; f < faces.size(); ++f) corners = std::max(corners, faces[f].size());
-  const std::size_t farthest = corners / 2;  // sides from one corner of a polygon to another
+  const std::size_t farthest = corners / 2;  // largest number of sides between two corners of a polygon
   return flat.length_unit * side * static_cast<double>(farthest);
 }
 

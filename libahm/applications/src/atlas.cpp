@@ -22,8 +22,8 @@
 
 namespace ahm {
 
-/// Two faces are neighbours, once per side, where both have the same two vertices next to each other; at a side of many
-/// faces, each with the next.
+/// Neighbors of each face: faces that share a side, once per shared side. On a side of many faces, consecutive ones are
+/// neighbors.
 class FaceNeighbors {
  public:
   explicit FaceNeighbors(const FaceList& faces) : begin_(faces.size() + 1, 0) {
@@ -66,12 +66,12 @@ class FaceNeighbors {
   std::vector<Index> neighbors_;
 };
 
-/// For every source the vertices of all faces that touch its cell, and their coordinates there.
+/// For every source: the vertices of all faces that touch its cell, and their coordinates from that source.
 class Regions {
  public:
   Regions() = default;
   Regions(const FaceList& faces, std::span<const Index> label, std::size_t sources) : begin_(sources + 1, 0) {
-    // The sources of every vertex first: gone over in order, they have their vertices in order.
+    // Sources are first collected per vertex, so that the vertices of each source come in ascending order.
     std::vector<Offset> first(label.size() + 1, 0);
     for_entries(faces, label, [&](Index, Index vertex) { ++first[at(vertex) + 1]; });
     std::partial_sum(first.begin(), first.end(), first.begin());
@@ -93,8 +93,8 @@ class Regions {
     known_.assign(sources, 0);
   }
 
-  /// Takes over from `before`, whose sources come first here, what it has of them.
-  /// @return the sources of which anything is missing
+  /// Copies coordinates from `before`, whose sources are the first ones here.
+  /// @return the sources without coordinates for some vertex
   std::vector<Index> adopt(const Regions& before) {
     std::vector<Index> missing;
     for (std::size_t s = 0; s + 1 < begin_.size(); ++s) {
@@ -113,11 +113,11 @@ class Regions {
     return missing;
   }
 
-  /// The vertices of a source.
+  /// The vertices in the region of a source.
   std::span<const Vertex> of(Index source) const {
     return std::span(vertices_).subspan(at(begin_[source]), at(begin_[source + 1] - begin_[source]));
   }
-  /// @param coordinates  of the vertices of these sources, one after the other
+  /// @param coordinates  coordinates of the vertices of these sources, source by source
   void keep(std::span<const Index> sources, std::span<const double> coordinates) {
     auto next = coordinates.begin();
     for (Index source : sources) {
@@ -128,9 +128,9 @@ class Regions {
     }
   }
 
-  /// Whether the map of a source has coordinates of all of its vertices.
+  /// Whether all vertices in the region of a source have coordinates.
   bool is_known(Index source) const { return known_[source] != 0; }
-  /// NaN where unknown.
+  /// (u, v) of a vertex from a source; NaN where unknown.
   std::array<double, 2> coordinates(Index source, Index vertex) const {
     const Offset k = find(at(source), Vertex(vertex));
     if (k < 0) return {std::nan(""), std::nan("")};
@@ -138,7 +138,7 @@ class Regions {
   }
 
  private:
-  /// -1 where the region does not hold the vertex.
+  /// Index of the vertex in `vertices_`; -1 where the region does not contain it.
   Offset find(std::size_t source, Vertex vertex) const {
     const auto first = vertices_.begin() + begin_[source], last = vertices_.begin() + begin_[source + 1];
     const auto found = std::lower_bound(first, last, vertex);
@@ -156,7 +156,7 @@ class Regions {
     for (std::size_t f = 0; f < faces.size(); ++f) {
       const auto face = faces[f];
       for (std::size_t c = 0; c < face.size(); ++c) {
-        const Index source = label[face[c]];  // -1: none
+        const Index source = label[face[c]];  // -1: no source
         const bool seen = std::any_of(face.begin(), face.begin() + static_cast<std::ptrdiff_t>(c),
                                       [&](Index v) { return label[v] == source; });
         if (source < 0 || seen) continue;
@@ -168,7 +168,7 @@ class Regions {
   std::vector<Offset> begin_{0};
   std::vector<Vertex> vertices_;
   std::vector<double> coordinates_;
-  std::vector<std::uint8_t> known_;  ///< of every source
+  std::vector<std::uint8_t> known_;  ///< for every source: all of its coordinates are finite
 };
 
 class AtlasMaker {
@@ -176,12 +176,11 @@ class AtlasMaker {
   /// @throws as `make_atlas`
   AtlasMaker(const AnySolver& maps, const FaceList& faces);
 
-  /// @param sources  begin with those of the call before: their cells have only shrunk since, so that their maps need
-  /// not be made again
+  /// @param sources  begin with those of the previous call. Their cells can only shrink, so their maps are reused
   void make(std::span<const Vertex> sources);
   const Atlas& atlas() const { return atlas_; }
   Atlas take() { return std::move(atlas_); }
-  /// Whether this chart was not there before the last call, with the same faces in the same places.
+  /// Whether the last call changed this chart: its source, its faces or its map.
   bool is_new(std::size_t chart) const { return is_new_[chart] != 0; }
 
  private:
@@ -193,9 +192,9 @@ class AtlasMaker {
   FaceList faces_;
   FaceNeighbors neighbors_;
   Regions regions_;
-  std::optional<Wavefront> front_;  ///< from all sources so far, for cells by heat
+  std::optional<Wavefront> front_;  ///< front from all sources so far; heat method only
   Atlas atlas_;
-  std::vector<std::uint8_t> is_new_;  ///< of every chart
+  std::vector<std::uint8_t> is_new_;  ///< for every chart: changed by the last call
 };
 
 namespace {
@@ -205,14 +204,14 @@ constexpr Index nobody = -1;
 void check(const TangentGraph& graph, const FaceList& faces) {
   if (graph.dimension() != 2)
     throw InvalidArgument("the graph has dimension " + std::to_string(graph.dimension()) +
-                          "; an atlas is of a surface, dimension 2");
+                          "; an atlas requires a surface, dimension 2");
   if (faces.begin.empty() || faces.begin.front() != 0 || faces.begin.back() != std::ssize(faces.vertices) ||
       !std::is_sorted(faces.begin.begin(), faces.begin.end()))
-    throw InvalidArgument("'faces.begin' must rise from 0 to the number of corners, " +
+    throw InvalidArgument("'faces.begin' must ascend from 0 to the number of corners, " +
                           std::to_string(faces.vertices.size()));
   for (std::size_t c = 0; c < faces.vertices.size(); ++c)
     if (faces.vertices[c] < 0 || faces.vertices[c] >= graph.size())
-      throw InvalidArgument("corner " + std::to_string(c) + " names vertex " + std::to_string(faces.vertices[c]) +
+      throw InvalidArgument("corner " + std::to_string(c) + " refers to vertex " + std::to_string(faces.vertices[c]) +
                             ", outside [0, " + std::to_string(graph.size()) + ")");
 }
 
@@ -226,7 +225,7 @@ double sum_of_distances(const Regions& regions, Index source, std::span<const In
   return sum;
 }
 
-/// The cell C_i of the paper: the source with the least sum of distances.
+/// The cell C_i of the paper for every face: the source with the smallest sum of distances to its corners.
 std::vector<Index> nearest_of_faces(const FaceList& faces, std::span<const Index> label, const Regions& regions) {
   std::vector<Index> result(faces.size(), nobody);
   for (std::size_t f = 0; f < faces.size(); ++f) {
@@ -249,7 +248,7 @@ std::vector<Index> nearest_of_faces(const FaceList& faces, std::span<const Index
   return result;
 }
 
-/// Connected pieces of faces of equal sources.
+/// Connected pieces of faces with the same source.
 class Pieces {
  public:
   Pieces(const FaceNeighbors& neighbors, std::span<const Index> source) : of_face(source.size(), nobody) {
@@ -270,7 +269,7 @@ class Pieces {
     }
   }
 
-  /// The piece of each source with the most faces; `nobody` where it has none.
+  /// The piece with the most faces of each source; `nobody` for a source without faces.
   std::vector<Index> largest(std::span<const Index> source, std::size_t sources) const {
     std::vector<Index> result(sources, nobody);
     for (std::size_t p = 0; p < faces.size(); ++p) {
@@ -284,7 +283,8 @@ class Pieces {
   std::vector<std::vector<Index>> faces;
 };
 
-/// The source of the neighbouring main piece with which `island` shares most sides and which knows it; else `nobody`.
+/// The neighboring source whose main piece shares most sides with `island` and whose map covers it; `nobody` if there is
+/// none.
 Index best_neighbor(const std::vector<Index>& island, const FaceNeighbors& neighbors, const FaceList& faces,
                     std::span<const Index> source, const std::vector<std::uint8_t>& in_main, const Regions& regions) {
   std::vector<Index> candidates;  // one per shared side
@@ -304,8 +304,8 @@ Index best_neighbor(const std::vector<Index>& island, const FaceNeighbors& neigh
   return best;
 }
 
-/// Gives what is cut off from its cell to a neighbouring chart, as long as that is possible.
-/// @return the pieces then
+/// Attaches pieces that are cut off from their cell to neighboring charts, until no more can be attached.
+/// @return the resulting pieces
 Pieces attach_islands(const FaceNeighbors& neighbors, const FaceList& faces, const Regions& regions,
                       std::size_t sources, std::vector<Index>& source) {
   while (true) {
@@ -326,7 +326,8 @@ Pieces attach_islands(const FaceNeighbors& neighbors, const FaceList& faces, con
   }
 }
 
-/// Whether the map turns most faces of a chart over; their areas would cancel where it closes around a handle.
+/// Whether the map flips most faces of a chart. Faces are counted, because areas cancel where the chart closes around a
+/// handle.
 bool is_mirrored(const Atlas& atlas, const FaceList& faces, const Chart& chart) {
   std::ptrdiff_t balance = 0;
   for (Index f : chart.faces) {
@@ -341,7 +342,7 @@ bool is_mirrored(const Atlas& atlas, const FaceList& faces, const Chart& chart) 
   return balance < 0;
 }
 
-/// The charts of the pieces, in the order of their sources.
+/// The pieces as charts, sorted by source.
 std::vector<Chart> charts_of(Pieces pieces, std::span<const Index> source) {
   std::vector<Chart> charts;
   for (std::vector<Index>& piece : pieces.faces) {
@@ -354,7 +355,7 @@ std::vector<Chart> charts_of(Pieces pieces, std::span<const Index> source) {
   return charts;
 }
 
-/// Puts the corners of a chart where its source has them.
+/// Copies the coordinates of a chart's corners from its source.
 void put_corners(const FaceList& faces, const Regions& regions, const Chart& chart, Atlas& atlas) {
   for (Index f : chart.faces)
     for (Offset c = faces.begin[f]; c < faces.begin[f + 1]; ++c) {
@@ -382,7 +383,7 @@ VoronoiCells AtlasMaker::cells(std::span<const Vertex> sources) {
   return front_ ? voronoi_cells(*front_, sources) : maps_.cells(sources);
 }
 
-/// From every source as far as to all corners of the faces that touch its cell.
+/// Radius from each source that covers all corners of the faces that touch its cell.
 std::vector<double> AtlasMaker::reach(const VoronoiCells& cells, std::size_t sources) const {
   std::vector<double> farthest(sources, 0);
   for (std::size_t v = 0; v < cells.labels.size(); ++v)
@@ -410,8 +411,8 @@ void AtlasMaker::make(std::span<const Vertex> sources) {
   atlas_.sources.assign(sources.begin(), sources.end());
 }
 
-/// Puts these charts into the place of those before; what was so already stays.
-/// @param remade  sources whose maps are other than before, ascending
+/// Replaces the charts. The coordinates of unchanged charts are kept.
+/// @param remade  sources whose maps have changed, ascending
 void AtlasMaker::update(std::vector<Chart> charts, std::span<const Index> remade) {
   const std::vector<Index> before = std::exchange(atlas_.chart_of_face, std::vector<Index>(faces_.size(), nobody));
   is_new_.assign(charts.size(), 1);
@@ -463,7 +464,7 @@ ChartBox box_along(const std::vector<Vec2>& hull, double c, double s) {
   return box;
 }
 
-/// One side of the least rectangle lies along a side of the convex hull [FS75].
+/// The box of smallest area: one of its sides lies along a side of the convex hull [FS75].
 ChartBox least_box(const std::vector<Vec2>& hull) {
   ChartBox best = box_along(hull, 1, 0);
   double least = std::numeric_limits<double>::infinity();
@@ -476,7 +477,7 @@ ChartBox least_box(const std::vector<Vec2>& hull) {
     if (area < least) least = area, best = box;
   }
   if (best.high[0] - best.low[0] < best.high[1] - best.low[1])
-    best = box_along(hull, -best.turn[1], best.turn[0]);  // a quarter further
+    best = box_along(hull, -best.turn[1], best.turn[0]);  // turned by another quarter
   return best;
 }
 
@@ -487,7 +488,7 @@ std::vector<ChartBox> chart_boxes(const Atlas& atlas, const FaceList& faces) {
     if (faces.size() != atlas.chart_of_face.size() || 2 * faces.vertices.size() != atlas.coordinates.size())
       throw InvalidArgument("there are " + std::to_string(faces.size()) + " faces with " +
                             std::to_string(faces.vertices.size()) + " corners, but the atlas has " +
-                            std::to_string(atlas.chart_of_face.size()) + " with " +
+                            std::to_string(atlas.chart_of_face.size()) + " faces with " +
                             std::to_string(atlas.coordinates.size() / 2));
     std::vector<ChartBox> boxes;
     for (const Chart& chart : atlas.charts) {
@@ -511,11 +512,12 @@ namespace {
 void check(const Atlas& atlas, const FaceList& faces) {
   if (atlas.chart_of_face.size() != faces.size() || atlas.coordinates.size() != 2 * faces.vertices.size())
     throw InvalidArgument("the atlas has " + std::to_string(atlas.chart_of_face.size()) + " faces and " +
-                          std::to_string(atlas.coordinates.size() / 2) + " corners, not those " +
-                          std::to_string(faces.size()) + " and " + std::to_string(faces.vertices.size()) + " given");
+                          std::to_string(atlas.coordinates.size() / 2) + " corners, but 'faces' has " +
+                          std::to_string(faces.size()) + " faces and " + std::to_string(faces.vertices.size()) +
+                          " corners");
 }
 
-/// Faces cut into fans of triangles, and what the atlas does to them.
+/// Faces cut into fans of triangles, and the distortion of these triangles in the atlas.
 struct Fans {
   std::vector<std::array<Offset, 3>> corners;
   std::vector<TriangleDistortion> triangles;
@@ -536,7 +538,7 @@ struct Fans {
   }
 };
 
-/// Where a chart wants another source; -1 where it is good, or no vertex is left.
+/// The vertex that becomes another source in a chart; -1 where the chart is good or no vertex is left.
 Index vertex_to_add(const Atlas& atlas, const FaceList& faces, std::span<const Vec3> positions, const Chart& chart,
                     const std::vector<bool>& is_source, const RefineOptions& options) {
   const Fans fans(atlas, faces, positions, chart.faces);
@@ -557,7 +559,7 @@ Index vertex_to_add(const Atlas& atlas, const FaceList& faces, std::span<const V
   return bad_area > options.share * area ? vertex : -1;
 }
 
-/// The sources and, of each component of faces without one, a vertex.
+/// The sources, and one vertex of each component of faces without a source.
 std::vector<Vertex> one_per_component(const TangentGraph& graph, std::span<const Vertex> sources, const FaceList& faces,
                                       std::size_t most) {
   std::vector<Vertex> result(sources.begin(), sources.end());
@@ -619,7 +621,7 @@ Atlas make_atlas(const AnySolver& maps, std::span<const Vertex> sources, const F
     const Atlas& atlas = maker.atlas();
     std::vector<bool> is_source(positions.size(), false);
     for (Vertex vertex : atlas.sources) is_source[vertex.index] = true;
-    std::vector<bool> settled(faces.size(), false);  // at the first face of a chart: it wants no other source
+    std::vector<bool> settled(faces.size(), false);  // indexed by the first face of a chart: it needs no other source
     while (true) {
       std::vector<Vertex> more = atlas.sources;
       for (std::size_t k = 0; k < atlas.charts.size(); ++k) {
@@ -628,7 +630,7 @@ Atlas make_atlas(const AnySolver& maps, std::span<const Vertex> sources, const F
         if (!maker.is_new(k) && settled[chart.faces.front()]) continue;
         const Index vertex = vertex_to_add(atlas, faces, positions, chart, is_source, refine);
         settled[chart.faces.front()] = vertex < 0;
-        if (vertex < 0 || is_source[vertex]) continue;  // two charts may want the same corner
+        if (vertex < 0 || is_source[vertex]) continue;  // two charts may choose the same corner
         is_source[vertex] = true;
         more.push_back(Vertex(vertex));
       }

@@ -21,12 +21,12 @@ void check_vertices(const TangentGraph& graph, std::span<const Vertex> vertices)
     if (vertex < 0 || vertex >= graph.size())
       throw InvalidArgument("vertex " + std::to_string(vertex) + " is outside [0, " + std::to_string(graph.size()) +
                             ")");
-    if (taken[vertex]) throw InvalidArgument("vertex " + std::to_string(vertex) + " is given twice");
+    if (taken[vertex]) throw InvalidArgument("vertex " + std::to_string(vertex) + " occurs twice in 'vertices'");
     taken[vertex] = true;
   }
 }
 
-/// The vertices to choose from, in ascending order: those given, or all.
+/// The candidates in ascending order: the vertices of `among`, or all.
 std::vector<Vertex> candidates(Index vertices, Vertex first, Index count, std::span<const Vertex> among) {
   if (first.index < 0 || first.index >= vertices)
     throw InvalidArgument("'first' " + std::to_string(first.index) + " is outside [0, " + std::to_string(vertices) +
@@ -45,19 +45,19 @@ std::vector<Vertex> candidates(Index vertices, Vertex first, Index count, std::s
 }  // namespace
 
 VoronoiCells voronoi_cells(const TangentGraph& graph, std::span<const Vertex> vertices) {
-  return detail::with_memory_check("labelling by the nearest source", [&] {
+  return detail::with_memory_check("computing Voronoi cells", [&] {
     Wavefront front(graph);
     return voronoi_cells(front, vertices);
   });
 }
 
 VoronoiCells voronoi_cells(Wavefront& front, std::span<const Vertex> vertices) {
-  return detail::with_memory_check("labelling by the nearest source", [&] {
+  return detail::with_memory_check("computing Voronoi cells", [&] {
     const TangentGraph& graph = front.graph();
     check_vertices(graph, vertices);
     if (front.points() > std::ssize(vertices))
-      throw InvalidArgument("'front' comes from " + std::to_string(front.points()) + " points, more than the " +
-                            std::to_string(vertices.size()) + " vertices given");
+      throw InvalidArgument("'front' has " + std::to_string(front.points()) + " points, more than 'vertices' (" +
+                            std::to_string(vertices.size()) + ")");
     for (Vertex vertex : vertices.subspan(static_cast<std::size_t>(front.points())))
       front.add(Source::at_vertex(vertex));
     front.run();
@@ -81,7 +81,7 @@ VoronoiCells voronoi_cells(Wavefront& front, std::span<const Vertex> vertices) {
 VoronoiCells voronoi_cells(const ExactGeodesics& geodesics, std::span<const Vertex> vertices,
                            const ExactMapOptions& options) {
   check_vertices(geodesics.surface().graph(), vertices);
-  return detail::with_memory_check("labelling by the nearest source", [&] {
+  return detail::with_memory_check("computing Voronoi cells", [&] {
     const exact::PolyhedralSurface& triangles = geodesics.triangles().surface;
     std::vector<exact::MeshPoint> sources;
     for (Vertex vertex : vertices) sources.push_back(triangles.vertex_point(vertex));
@@ -100,7 +100,7 @@ VoronoiCells voronoi_cells(const ExactGeodesics& geodesics, std::span<const Vert
 
 std::vector<Vertex> farthest_points(const TangentGraph& graph, Vertex first, Index count, const Progress& progress,
                                     std::span<const Vertex> among) {
-  return detail::with_memory_check("spreading points", [&] {
+  return detail::with_memory_check("choosing farthest points", [&] {
     Wavefront front(graph, Wavefront::one_rings(graph));
     return farthest_points(front, first, count, progress, among);
   });
@@ -108,9 +108,9 @@ std::vector<Vertex> farthest_points(const TangentGraph& graph, Vertex first, Ind
 
 std::vector<Vertex> farthest_points(Wavefront& front, Vertex first, Index count, const Progress& progress,
                                     std::span<const Vertex> among) {
-  return detail::with_memory_check("spreading points", [&] {
+  return detail::with_memory_check("choosing farthest points", [&] {
     if (front.points() > 0)
-      throw InvalidArgument("'front' comes from " + std::to_string(front.points()) + " points already");
+      throw InvalidArgument("'front' already has points (" + std::to_string(front.points()) + "); use a new front");
     Farthest farthest(candidates(front.graph().size(), first, count, among));
     std::vector<Vertex> points{first};
     while (points.size() < static_cast<std::size_t>(count)) {
@@ -126,7 +126,7 @@ std::vector<Vertex> farthest_points(Wavefront& front, Vertex first, Index count,
 std::vector<Vertex> farthest_points(const ExactGeodesics& geodesics, Vertex first, Index count,
                                     const ExactMapOptions& options, std::span<const Vertex> among) {
   const exact::PolyhedralSurface& triangles = geodesics.triangles().surface;
-  return detail::with_memory_check("spreading points", [&] {
+  return detail::with_memory_check("choosing farthest points", [&] {
     Farthest farthest(candidates(triangles.vertex_count(), first, count, among));
     std::vector<Vertex> points{first};
     std::vector<double> distance(static_cast<std::size_t>(triangles.vertex_count()),
@@ -137,9 +137,9 @@ std::vector<Vertex> farthest_points(const ExactGeodesics& geodesics, Vertex firs
       options.progress.step("farthest points", static_cast<double>(points.size()) / count);
       const exact::ExactMap map = exact::exact_map(triangles, triangles.vertex_point(points.back()), nearer);
       for (Index i = 0; i < map.size(); ++i)
-        if (const double d = map.distance(Vertex(i)); d < distance[i]) distance[i] = d;  // never so for NaN
+        if (const double d = map.distance(Vertex(i)); d < distance[i]) distance[i] = d;  // false for NaN
       points.push_back(farthest.of([&](Vertex vertex) { return distance[vertex.index]; }));
-      nearer.radius = distance[points.back().index];  // beyond, no vertex gets nearer
+      nearer.radius = distance[points.back().index];  // no vertex farther than this gets nearer
     }
     return points;
   });

@@ -1,5 +1,5 @@
 /// \file
-/// The farthest vertex, again and again while distances shrink.
+/// Finds the farthest vertex repeatedly, while distances shrink.
 ///
 /// \code
 /// ahm::Farthest farthest(vertices);
@@ -16,18 +16,18 @@
 
 namespace ahm {
 
-/// A heap of distances as they were, whose top is put right until it is true: a vertex is looked at only when it is on top,
-/// which it leaves when its distance has shrunk.
+/// A heap of distances that may be outdated. A distance is updated only when its vertex is on top; if it has shrunk, the
+/// vertex moves down.
 class Farthest {
  public:
-  /// All distances begin as infinity. @param vertices  in ascending order
+  /// All distances start as infinity. @param vertices  in ascending order
   explicit Farthest(std::span<const Vertex> vertices) {
     heap_.reserve(vertices.size());
     for (const Vertex vertex : vertices) heap_.push_back({std::numeric_limits<double>::infinity(), vertex.index});
   }
 
-  /// The first of those that are farthest.
-  /// @param distance  of a vertex, never more than in calls before, no NaN
+  /// The farthest vertex; of several the first.
+  /// @param distance  distance of a vertex: not larger than in previous calls, not NaN
   template <class Distance>
   Vertex of(const Distance& distance) {
     for (;;) {

@@ -16,24 +16,23 @@
 namespace ahm {
 namespace {
 
-/// The part of `v` along the unit vector `axis`.
+/// Removes the component of `v` along the unit vector `axis`.
 void remove(Vec3& v, const Vec3& axis) {
   const double along = v[0] * axis[0] + v[1] * axis[1] + v[2] * axis[2];
   for (std::size_t c = 0; c < 3; ++c) v[c] -= along * axis[c];
 }
 
-/// @param has  "the path has 7"
-/// @param points  for which there must be room at once
+/// @param has  begin of the message, for example "the path has 7"
+/// @param points  number of points that memory must hold at once
 void check_memory(const std::string& has, double points) {
   if (const double machine = machine_memory(); machine > 0 && points * sizeof(CoveragePoint) > machine)
-    throw ResourceExhausted(has +
-                            " points, for which memory does not suffice; enlarge spacing or step, or lower radius");
+    throw ResourceExhausted(has + " points, which do not fit into memory; enlarge spacing or step, or lower radius");
 }
 
 void check(const CoverageOptions& o) {
   const auto check_positive = [](const char* name, double value) {
     if (!(value > 0 && std::isfinite(value)))
-      throw InvalidArgument(std::string(name) + " is " + detail::number(value) + "; give a finite number > 0");
+      throw InvalidArgument(std::string(name) + " is " + detail::number(value) + "; it must be finite and > 0");
   };
   check_positive("radius", o.radius);
   check_positive("spacing", o.spacing);
@@ -47,7 +46,7 @@ void check(const CoverageOptions& o) {
   check_memory("the pattern has about " + detail::number(points), points);
 }
 
-/// A line of the raster, `across` away from the source, from left to right along (1, 0).
+/// A line of the raster at distance `across` from the source, in the direction (1, 0).
 std::vector<Vec2> raster_line(double across, double radius, double step) {
   const double unit = power_of_two_below(radius), r = radius / unit, y = across / unit;
   const double half = unit * std::sqrt(std::max(0.0, (r - y) * (r + y)));
@@ -67,7 +66,7 @@ std::vector<Vec2> spiral(double spacing, double radius, double step) {
   double angle = 0;
   for (std::size_t k = 1; k <= steps; ++k) {
     const double s = arclength(last) * static_cast<double>(k) / static_cast<double>(steps);
-    for (int newton = 0; newton < 50; ++newton) {  // s is convex: from the second iterate on from above
+    for (int newton = 0; newton < 50; ++newton) {  // s is convex: from the second iterate on, the angle decreases
       const double change = (arclength(angle) - s) / (b * std::hypot(1, angle));
       angle -= change;
       if (std::abs(change) <= 1e-14 * angle) break;
@@ -77,10 +76,10 @@ std::vector<Vec2> spiral(double spacing, double radius, double step) {
   return line;
 }
 
-/// Carries planar lines to the surface, one after the other.
+/// Maps planar lines to the surface, one after the other.
 class Carrier {
  public:
-  /// @param geodesics  that join points; null: straight lines
+  /// @param geodesics  joins the points by shortest paths; null: straight lines
   Carrier(const InverseMap& inverse, const CoverageOptions& options, const ExactGeodesics* geodesics)
       : inverse_(inverse),
         geodesics_(geodesics),
@@ -106,10 +105,10 @@ class Carrier {
   CoveragePath result() { return std::move(path_); }
 
  private:
-  std::size_t size() const { return path_.points.size() - begin_; }  // of the current piece
+  std::size_t size() const { return path_.points.size() - begin_; }  // number of points of the current piece
   double distance(const InversePoint& point) const { return length(point.position - path_.points.back().position); }
 
-  /// Finds the point on the surface. Inside polygons that are not flat it is moved to the triangles on which paths run.
+  /// Finds the point on the surface. In polygons that are not flat, moves it to the triangles on which paths run.
   void place(InversePoint& point) {
     const Surface& surface = geodesics_->surface();
     place_ = surface.closest_point(point.position).point;
@@ -118,8 +117,8 @@ class Carrier {
       point.position = geodesics_->position(geodesics_->point(place_));
   }
 
-  /// Whether the way from the last point to this one is no longer than that; the points where it bends become those of
-  /// the piece.
+  /// Whether the path from the last point to this one is at most `most` long. Appends the points where it bends to the
+  /// piece.
   bool reaches(const SurfacePoint& from, const InversePoint& point, const Vec2& q, double most) {
     if (distance(point) > most) return false;
     if (geodesics_ == nullptr) return true;
@@ -146,13 +145,13 @@ class Carrier {
         {point.position, point.normal, point.frame().x, q, path_.pieces, line, arclength, 0.0, false});
   }
 
-  /// Before the points move to twice their room.
+  /// Checks memory before the vector of points doubles its capacity.
   void check_room() const {
     const std::size_t count = path_.points.size();
     check_memory("the path has more than " + std::to_string(count), 3.0 * static_cast<double>(count));
   }
 
-  /// Headings and spacings of the current piece; a point alone has none and is dropped.
+  /// Completes headings and spacings of the current piece; a single point has none and is dropped.
   void end_piece() {
     const std::size_t count = size();
     if (count == 1) path_.points.pop_back();
@@ -161,7 +160,7 @@ class Carrier {
     begin_ = path_.points.size();
   }
 
-  /// From the neighbours in the piece.
+  /// Computes heading and spacing of a point from its neighbors in the piece.
   void complete(std::size_t k, std::size_t count) {
     const CoveragePoint &from = path_.points[begin_ + (k > 0 ? k - 1 : k)],
                         &to = path_.points[begin_ + std::min(k + 1, count - 1)];
@@ -189,7 +188,7 @@ class Carrier {
   const InverseMap& inverse_;
   const ExactGeodesics* geodesics_;
   double spacing_, c_, s_;
-  SurfacePoint place_ = Row{};  ///< of the last point of the pattern, where paths join them
+  SurfacePoint place_ = Row{};  ///< last point of the pattern on the surface; used where paths join the points
   CoveragePath path_;
   std::size_t begin_ = 0;
 };

@@ -1,5 +1,5 @@
 /// \file
-/// Where a curve goes in the plane of coordinates.
+/// Curves in the plane of coordinates.
 #pragma once
 
 #include <cmath>
@@ -12,12 +12,12 @@
 
 namespace ahm {
 
-/// Where a point of the curve lies in the plane of coordinates, and which way the curve runs there, unit length.
+/// Position and unit direction of a curve at one of its points, in the plane of coordinates.
 struct PlanePlace {
   Vec2 position, direction;
 };
 
-/// At arclength s of a curve of this length.
+/// The place at arclength s of a curve of this length.
 inline PlanePlace place_in_plane(double s, double length, StrokeShape shape) {
   if (shape == StrokeShape::line) return {{s, 0}, {1, 0}};
   const double radius = length / (2 * std::numbers::pi), c = std::cos(s / radius), d = std::sin(s / radius);
@@ -27,8 +27,9 @@ inline PlanePlace place_in_plane(double s, double length, StrokeShape shape) {
 /// @throws InvalidArgument (`circle` on an open curve)
 void check_shape(const StrokeOptions& options);
 
-/// Which way a curve runs in the plane at each of its points.
-/// @throws InvalidArgument (as many positions as points, finite ones; a curve that turns back or stands still)
+/// Unit directions of a curve in the plane at each of its points.
+/// @throws InvalidArgument (number of positions other than `points`, a position that is not finite, a curve that turns back
+/// or does not advance)
 std::vector<Vec2> directions_of(std::span<const Vec2> positions, std::size_t points, bool closed);
 
 }  // namespace ahm

@@ -22,7 +22,7 @@ constexpr int circle_corners = 64;
 void check(const DecalOptions& o) {
   const auto check_positive = [](const char* name, double value, bool may_be_infinite) {
     if (!(value > 0) || (!may_be_infinite && !std::isfinite(value)))
-      throw InvalidArgument(std::string(name) + " is " + detail::number(value) + "; give a number > 0");
+      throw InvalidArgument(std::string(name) + " is " + detail::number(value) + "; it must be a number > 0");
   };
   check_positive("width", o.width, false);
   check_positive("height", o.height, false);
@@ -31,7 +31,7 @@ void check(const DecalOptions& o) {
   if (!std::isfinite(o.lift)) throw InvalidArgument("lift is not finite");
 }
 
-/// The image in the plane: places in it, and its borders.
+/// The image in the plane: coordinates in it, and its borders.
 class Placement {
  public:
   explicit Placement(const DecalOptions& options)
@@ -45,14 +45,14 @@ class Placement {
     }
   }
 
-  /// (u, v) as a place in the image, [0, 1]^2 inside.
+  /// Image coordinates of (u, v), in [0, 1]^2 inside.
   Vec2 in_image(const Vec2& q) const {
     const double x = (c_ * q[0] + s_ * q[1]) / options_.width, y = (c_ * q[1] - s_ * q[0]) / options_.height;
     return {0.5 + (options_.mirrored ? -x : x), 0.5 + y};
   }
 
   std::size_t borders() const { return 4 + circle_.size(); }
-  /// How far (u, v) is inside border `k`: linear in (u, v), 0 on the border.
+  /// A linear function of (u, v) that is 0 on border `k` and positive inside it.
   double inside(std::size_t k, const Vec2& q) const {
     if (k >= 4) return 1 - circle_[k - 4][0] * q[0] - circle_[k - 4][1] * q[1];
     const double x = in_image(q)[k / 2];
@@ -67,14 +67,14 @@ class Placement {
  private:
   DecalOptions options_;
   double c_, s_;
-  std::vector<Vec2> circle_;  ///< normals of the sides, divided by their distance
+  std::vector<Vec2> circle_;  ///< normals of the polygon's sides, divided by their distance from the source
 };
 
 Vec2 combine(const Weights& w, const std::array<Vec2, 3>& q) {
   return {w[0] * q[0][0] + w[1] * q[1][0] + w[2] * q[2][0], w[0] * q[0][1] + w[1] * q[1][1] + w[2] * q[2][1]};
 }
 
-/// What is left of a triangle inside the image, as barycentric weights [SH74]; empty: nothing.
+/// The part of a triangle inside the image, as a polygon of barycentric weights [SH74]; empty if there is none.
 std::vector<Weights> clipped(const Placement& image, const std::array<Vec2, 3>& q) {
   std::vector<Weights> polygon{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, kept;
   std::vector<double> inside;
@@ -96,7 +96,7 @@ std::vector<Weights> clipped(const Placement& image, const std::array<Vec2, 3>& 
   return polygon.size() < 3 ? std::vector<Weights>{} : polygon;
 }
 
-/// Whether the map answers with this sheet at the middle of the polygon.
+/// Whether the inverse map returns a point of this sheet at the middle of the polygon.
 bool is_uppermost(const InverseMap& inverse, const Triangle& t, const std::vector<Weights>& polygon) {
   Weights middle{};
   for (const Weights& w : polygon)
@@ -114,10 +114,10 @@ bool is_uppermost(const InverseMap& inverse, const Triangle& t, const std::vecto
     }
     longest = std::max(longest, length(edge));
   }
-  return length(away) <= longest;  // triangles of one sheet may overlap on clouds
+  return length(away) <= longest;  // on clouds, triangles of one sheet may overlap
 }
 
-/// Of these triangles, in their order, those that hang together with the first one through vertices.
+/// The triangles that are connected to the first one through shared vertices, in the same order.
 std::vector<Triangle> joined_to_first(const std::vector<Triangle>& triangles, std::size_t vertices) {
   detail::DisjointSets parts(triangles.empty() ? 0 : vertices);
   for (const Triangle& t : triangles)
@@ -146,7 +146,7 @@ struct Shown {
   }
 };
 
-/// Collects the pieces; corners of the surface's triangles are shared.
+/// Collects the pieces of a decal. They share those corners that are vertices of the surface.
 class Collector {
  public:
   Collector(const InverseMap& inverse, const Placement& image, double lift)
@@ -186,7 +186,7 @@ class Collector {
     decal_.points.push_back(position);
     decal_.normals.push_back(normal);
     for (double x : image_.in_image(combine(w, inverse_.corners(t))))
-      decal_.image_coordinates.push_back(std::clamp(x, 0.0, 1.0));  // rounding at the borders
+      decal_.image_coordinates.push_back(std::clamp(x, 0.0, 1.0));  // removes rounding errors at the borders
     return static_cast<Index>(decal_.points.size()) - 1;
   }
 

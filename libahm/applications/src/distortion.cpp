@@ -13,12 +13,12 @@
 namespace ahm {
 namespace {
 
-/// Below this share of the square of its longest side the area of a triangle is rounding.
+/// A triangle has no area if its area is below this share of the square of its longest side: then it is rounding error.
 constexpr double least_area = 1e-14;
-/// A triangle of a larger distortion collapses.
+/// A triangle with a larger distortion counts as collapsed.
 constexpr double most_distortion = 1e6;
 
-/// a - b in units of a power of two, so that nothing overflows.
+/// (a - b) / unit for a power of two `unit`; does not overflow.
 template <std::size_t d>
 std::array<double, d> scaled_difference(const std::array<double, d>& a, const std::array<double, d>& b, double unit) {
   return 1 / unit * a - 1 / unit * b;
@@ -35,7 +35,7 @@ TriangleDistortion of_triangle(const std::array<Vec3, 3>& p, const std::array<Ve
   const double unit = power_of_two_below(size);
   const Vec3 a = scaled_difference(p[1], p[0], unit), b = scaled_difference(p[2], p[0], unit);
 
-  // The triangle laid flat: a = (base, 0), b = (along, height).
+  // The triangle in the plane: a = (base, 0), b = (along, height).
   const double base = length(a), along = base > 0 ? dot(a, b) / base : 0, twice_area = length(cross(a, b));
   if (!(twice_area > least_area)) return result;
   result.side = unit * std::sqrt(twice_area / 2);
@@ -60,7 +60,7 @@ void check_length(const char* name, std::size_t size, std::size_t wanted) {
                           std::to_string(wanted));
 }
 
-/// `place(triangle, corner)`: where the two coordinates of a corner begin.
+/// @param place  place(triangle, corner): index of the first coordinate of a corner
 template <class Place>
 std::vector<TriangleDistortion> of_triangles(std::span<const Vec3> positions,
                                              std::span<const std::array<Index, 3>> triangles,
@@ -73,7 +73,7 @@ std::vector<TriangleDistortion> of_triangles(std::span<const Vec3> positions,
       for (std::size_t c = 0; c < 3; ++c) {
         const Index vertex = triangles[t][c];
         if (vertex < 0 || static_cast<std::size_t>(vertex) >= positions.size())
-          throw InvalidArgument("distortion: triangle " + std::to_string(t) + " names vertex " +
+          throw InvalidArgument("distortion: triangle " + std::to_string(t) + " refers to vertex " +
                                 std::to_string(vertex) + ", outside [0, " + std::to_string(positions.size()) + ")");
         p[c] = positions[vertex];
         q[c] = {coordinates[place(t, c)], coordinates[place(t, c) + 1]};

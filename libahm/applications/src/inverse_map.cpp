@@ -18,7 +18,7 @@
 namespace ahm {
 namespace {
 
-/// Zero stays zero.
+/// The unit vector along `a`; zero stays zero.
 Vec3 unit_or_zero(const Vec3& a) {
   const double norm = length(a);
   return norm > 0 ? Vec3{a[0] / norm, a[1] / norm, a[2] / norm} : Vec3{};
@@ -36,17 +36,17 @@ void check(const MappedSurface& s, const InverseMapOptions& options) {
   check_length("valid", s.valid.size(), n);
   const auto check_index = [&](const std::string& what, Index vertex) {
     if (vertex < 0 || to_size(vertex) >= n)
-      throw InvalidArgument(what + " names vertex " + std::to_string(vertex) + ", outside [0, " + std::to_string(n) +
-                            ")");
+      throw InvalidArgument(what + " refers to vertex " + std::to_string(vertex) + ", outside [0, " +
+                            std::to_string(n) + ")");
   };
   for (std::size_t t = 0; t < s.triangles.size(); ++t)
     for (Index vertex : s.triangles[t]) check_index("triangle " + std::to_string(t), vertex);
   for (Index vertex : s.sources) check_index("'sources'", vertex);
   if (!(options.max_stretch > 1))
-    throw InvalidArgument("max_stretch is " + std::to_string(options.max_stretch) + "; give a number > 1");
+    throw InvalidArgument("max_stretch is " + std::to_string(options.max_stretch) + "; it must be > 1");
 }
 
-/// Whether a map of this triangle has an inverse worth using.
+/// Whether the triangle can be used: it has valid corners, keeps its orientation and is not stretched too much.
 bool is_sound(const MappedSurface& s, const Triangle& t, double max_stretch) {
   std::array<Vec2, 3> q;
   for (std::size_t c = 0; c < 3; ++c) {
@@ -63,14 +63,14 @@ bool is_sound(const MappedSurface& s, const Triangle& t, double max_stretch) {
   Vec2 a = q[1] - q[0], b = q[2] - q[0];
   for (double& x : a) x /= edge[0];
   for (double& x : b) x /= edge[2];
-  return cross(a, b) > 1e-12;  // the sine of an angle
+  return cross(a, b) > 1e-12;  // sine of the angle at the first corner
 }
 
-/// Shortest ways from the sources along the edges of the triangles; infinite where there is none.
+/// Lengths of the shortest edge paths from the sources, along the triangles; infinite where there is none.
 std::vector<double> graph_distances(const MappedSurface& s, const std::vector<Triangle>& triangles,
                                     const std::vector<Index>& sources) {
   const std::size_t n = s.positions.size();
-  std::vector<Offset> begin(n + 1, 0);  // triangles of each vertex
+  std::vector<Offset> begin(n + 1, 0);  // first triangle of each vertex in `incident`
   for (const Triangle& t : triangles)
     for (Index v : t) ++begin[to_size(v) + 1];
   std::partial_sum(begin.begin(), begin.end(), begin.begin());
@@ -89,7 +89,7 @@ std::vector<double> graph_distances(const MappedSurface& s, const std::vector<Tr
   return distance;
 }
 
-/// The vertex of the triangles with the least |phi|.
+/// The vertex of the triangles with the smallest |phi|.
 std::vector<Index> nearest_to_origin(const MappedSurface& s, const std::vector<Triangle>& triangles) {
   std::vector<Index> best;
   double least = std::numeric_limits<double>::infinity();
@@ -109,7 +109,7 @@ std::vector<Index> starts(const MappedSurface& s, const std::vector<Triangle>& t
   return result.empty() ? nearest_to_origin(s, triangles) : result;
 }
 
-/// The sound triangles, nearest to the source first.
+/// The triangles that can be used, nearest to the source first.
 std::vector<Triangle> sorted_triangles(const MappedSurface& s, double max_stretch) {
   std::vector<Triangle> sound;
   for (const Triangle& t : s.triangles)
@@ -131,7 +131,7 @@ std::vector<Triangle> sorted_triangles(const MappedSurface& s, double max_stretc
 Frame InversePoint::frame() const {
   const double along = dot(du, normal);
   Vec3 x = unit_or_zero({du[0] - along * normal[0], du[1] - along * normal[1], du[2] - along * normal[2]});
-  if (x == Vec3{}) x = unit_or_zero(cross(dv, normal));  // du along the normal
+  if (x == Vec3{}) x = unit_or_zero(cross(dv, normal));  // du is parallel to the normal
   return {position, x, cross(normal, x), normal};
 }
 
@@ -155,7 +155,8 @@ Index InverseMap::bucket(std::size_t axis, double x) const {
   return static_cast<Index>(std::clamp(std::floor((x - low_[axis]) / side_), 0.0, buckets_[axis] - 1.0));
 }
 
-/// Square buckets, about as many as triangles; each lists the triangles whose bounding box touches it, in their order.
+/// Square buckets, about as many as triangles. Each lists the triangles whose bounding box touches it, nearest to the
+/// source first.
 void InverseMap::make_buckets() {
   if (triangles_.empty()) return;
   low_ = high_ = plane_[triangles_[0][0]];
@@ -197,7 +198,7 @@ std::optional<InversePoint> InverseMap::at(double u, double v) const {
   const Vec2 q{u / unit_, v / unit_};
   const std::optional<InversePoint> found = in_triangles(q);
   if (!origin_ || q != Vec2{0, 0}) return found;
-  // Where its own triangles are left out another one may lie there.
+  // If the triangles at the source are left out, a triangle of another sheet may cover (0, 0).
   return found && distance(found->position, origin_->position) <= 1e-9 * unit_ ? found : origin_;
 }
 
@@ -218,7 +219,7 @@ std::optional<InversePoint> InverseMap::in_triangle(const Triangle& t, const Vec
   point.vertices = t;
   point.weights = {0, cross(r, b) / area, cross(a, r) / area};
   point.weights[0] = 1 - point.weights[1] - point.weights[2];
-  // The tolerance closes the seams between triangles against rounding.
+  // The tolerance closes the gaps that rounding leaves between triangles.
   if (!(std::min({point.weights[0], point.weights[1], point.weights[2]}) >= -1e-10)) return std::nullopt;
   Vec3 ea = positions_[corner[1]] - positions_[corner[0]], eb = positions_[corner[2]] - positions_[corner[0]];
   for (std::size_t k = 0; k < 3; ++k) {
@@ -235,7 +236,7 @@ std::optional<InversePoint> InverseMap::in_triangle(const Triangle& t, const Vec
 
 namespace {
 
-/// Empty: none is asked for. @throws InvalidArgument (a quality of other vertices)
+/// The quality of each vertex; empty if no minimum is required. @throws InvalidArgument (a quality of other vertices)
 std::vector<double> quality_asked_for(const TangentGraph& graph, const LogMap& map, const InverseMapOptions& options) {
   if (!(options.min_quality > 0)) return {};
   if (options.quality.empty()) return map_quality(graph, map, options.threads);
@@ -245,8 +246,9 @@ std::vector<double> quality_asked_for(const TangentGraph& graph, const LogMap& m
   return {options.quality.begin(), options.quality.end()};
 }
 
-/// The source itself, where it is one point between at most three of the vertices that have a number.
-/// @param number  of a vertex in the arrays of `s`: an optional index
+/// The source as a point of the surface, if it is one point between at most three vertices that have an index in the arrays
+/// of `s`.
+/// @param number  number(vertex): that index, or none
 template <class Number>
 std::optional<InversePoint> origin_of(const TangentGraph& graph, const Source& source, const MappedSurface& s,
                                       const Number& number) {

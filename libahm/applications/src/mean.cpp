@@ -19,7 +19,7 @@
 
 namespace ahm {
 
-/// Points as K x d numbers with K weights > 0.
+/// Points as K x d coordinates with K weights > 0.
 struct FlatPoints {
   std::size_t dimension = 0;
   std::vector<double> coordinates;
@@ -31,10 +31,10 @@ struct FlatPoints {
   }
 };
 
-/// sum w z / sum w.
+/// The weighted mean: sum w z / sum w.
 std::vector<double> flat_mean(const FlatPoints& points);
 
-/// Where sum w |z - x| is least, to rounding; one of these places where there are several.
+/// A minimum of sum w |z - x| over x, to rounding.
 std::vector<double> flat_median(const FlatPoints& points);
 
 /// Distances of the points from x, one per point.
@@ -54,14 +54,14 @@ double sum_of_distances(const FlatPoints& points, const VectorXd& x) {
   return sum;
 }
 
-/// F(x) = sum w |z - x| near x. Points at x itself count by their weight alone.
+/// Derivatives of F(x) = sum w |z - x|. Points at x itself contribute to `weight` only.
 struct Slope {
-  VectorXd pull;      ///< sum w u, u the unit vectors towards the points: - grad F
+  VectorXd pull;      ///< sum w u, with the unit vectors u towards the points: -grad F
   MatrixXd hessian;   ///< sum w / |z - x| (id - u u^T)
-  double rate = 0;    ///< sum w / |z - x|, not less than any eigenvalue of the Hessian
-  double weight = 0;  ///< of the points at x
+  double rate = 0;    ///< sum w / |z - x|, an upper bound of the eigenvalues of the Hessian
+  double weight = 0;  ///< weight of the points at x
 
-  /// Vardi & Zhang 2000: the points at x hold it where the others do not pull harder.
+  /// x is a minimum if the pull of the other points is at most the weight of the points at x (Vardi & Zhang 2000).
   bool is_least() const { return pull.norm() <= weight; }
 };
 
@@ -85,7 +85,8 @@ Slope slope_at(const FlatPoints& points, const VectorXd& x) {
   return slope;
 }
 
-/// The better of Newton's step and Weiszfeld's, which never fails to go down, at points too [VZ00]. Newton's may be worse by rounding.
+/// The better of Newton's and Weiszfeld's step. Weiszfeld's always descends, also at points [VZ00]. Newton's may be worse
+/// by rounding.
 VectorXd step(const FlatPoints& points, const VectorXd& x, const Slope& slope) {
   VectorXd weiszfeld = (1 - slope.weight / slope.pull.norm()) / slope.rate * slope.pull;
   if (slope.weight > 0) return weiszfeld;
@@ -123,7 +124,7 @@ std::vector<double> flat_median(const FlatPoints& points) {
   const std::vector<double> away = distances(points, mean);
   const double size = *std::max_element(away.begin(), away.end());
   for (int pass = 0; pass < 1000; ++pass) {
-    // A median that is one of the points would be approached ever more slowly.
+    // The iteration slows down near a median that is one of the points, so the nearest point is tested directly.
     const VectorXd z = nearest_point(points, x);
     if (slope_at(points, z).is_least()) {
       x = z;
@@ -140,7 +141,8 @@ std::vector<double> flat_median(const FlatPoints& points) {
 
 namespace {
 
-/// From a vertex in the axes of its frame. What leads out of the surface at once goes along the boundary as far as it does.
+/// Traces the offset of a center from its vertex. An offset that leaves the surface at once follows the boundary instead,
+/// by its component along it.
 Vec3 end_of_trace(const ExactGeodesics& geodesics, const Center& center) {
   constexpr double pi = std::numbers::pi;
   const exact::PolyhedralSurface& surface = geodesics.triangles().surface;
@@ -169,8 +171,8 @@ Vec3 center_position(const Surface& surface, const Center& center) {
   const TangentGraph& graph = surface.graph();
   if (surface.positions().empty()) throw InvalidArgument("the surface has no positions");
   if (center.vertex.index < 0 || center.vertex.index >= graph.size() || center.offset.size() != 2)
-    throw InvalidArgument("the center, at vertex " + std::to_string(center.vertex.index) +
-                          ", is one of another surface");
+    throw InvalidArgument("the center at vertex " + std::to_string(center.vertex.index) +
+                          " belongs to another surface");
   const Frame frame = graph.frame(center.vertex.index).value();
   if (length(center.offset) == 0) return frame.origin;
   if (surface.faces().size() == 0) return end_of_line(graph, center);
@@ -181,15 +183,15 @@ Vec3 center_position(const Surface& surface, const Center& center) {
 
 namespace {
 
-/// Weighted points, and what is to be least.
+/// Weighted points, and the kind of center.
 struct Problem {
   const AnySolver& maps;
-  const char* name;  ///< of what is sought, for messages
+  const char* name;  ///< name of the center, for messages
   std::vector<double> (*flat_center)(const FlatPoints&);
   std::vector<Source> points = {};
-  std::vector<std::size_t> numbers = {};  ///< of the points as given
-  std::vector<double> weights = {};       ///< > 0, the largest 1
-  bool frames = false;                    ///< some point may lie beside its only vertex
+  std::vector<std::size_t> numbers = {};  ///< indices of these points in the input
+  std::vector<double> weights = {};       ///< > 0, the largest is 1
+  bool frames = false;                    ///< a point may have an offset from its only vertex, so maps need frames
 };
 
 void check_vertex(const Problem& problem, Vertex vertex, const std::string& what) {
@@ -198,7 +200,7 @@ void check_vertex(const Problem& problem, Vertex vertex, const std::string& what
                           ", is outside [0, " + std::to_string(problem.maps.graph().size()) + ")");
 }
 
-/// Keeps the points of positive weight.
+/// Stores the points of positive weight.
 void set_points(Problem& problem, std::span<const Source> points, std::span<const double> weights) {
   const std::string name = problem.name;
   if (points.empty()) throw InvalidArgument(name + ": there are no points");
@@ -223,40 +225,40 @@ void set_points(Problem& problem, std::span<const Source> points, std::span<cons
   for (double& w : problem.weights) w /= largest;
 }
 
-/// Where a search begins that is near a point.
+/// The vertex of largest weight in a point, where a search can start.
 Vertex main_vertex(const Source& point) {
   const auto weights = point.weights();
   return point.vertices()[static_cast<std::size_t>(std::max_element(weights.begin(), weights.end()) - weights.begin())];
 }
 
-/// The points seen from a vertex, and their center there; lengths in graph units.
+/// The points in the map from a vertex, and their center there; lengths in graph units.
 struct View {
   LogMap map;
   FlatPoints points;
   std::vector<double> center;
 };
 
-/// @throws InvalidArgument when point k is not in the map
+/// @throws InvalidArgument if point k is not in the map
 void check_seen(const Problem& problem, const LogMap& map, Vertex from, std::size_t k) {
   for (Vertex vertex : problem.points[k].vertices()) {
     const Status status = map.status(vertex);
     if (status == Status::ok) continue;
-    const char* what = status == Status::disconnected    ? "' (take one center per component)"
+    const char* what = status == Status::disconnected    ? "' (compute one center per component)"
                        : status == Status::beyond_radius ? "' (raise the radius)"
-                                                         : "' (take a solver that marches)";
-    throw InvalidArgument(std::string(problem.name) + ": seen from vertex " + std::to_string(from.index) + ", point " +
-                          std::to_string(problem.numbers[k]) + ", at vertex " + std::to_string(vertex.index) +
-                          ", has status '" + std::string(to_string(status)) + what);
+                                                         : "' (use a solver that marches)";
+    throw InvalidArgument(std::string(problem.name) + ": in the map from vertex " + std::to_string(from.index) +
+                          ", point " + std::to_string(problem.numbers[k]) + ", at vertex " +
+                          std::to_string(vertex.index) + ", has status '" + std::string(to_string(status)) + what);
   }
 }
 
-/// What phi is multiplied with to be as long as the distance.
+/// The factor that scales phi to the length of the distance.
 double stretch(const LogMap& map, Vertex vertex) {
   const double size = length(map.coordinates(vertex));
   return size > 0 ? map.distance(vertex) / size : 1;
 }
 
-/// The same at a point: the mean of its vertices'.
+/// The factor at a point: the weighted mean of the factors of its vertices.
 double stretch(const LogMap& map, const Source& point) {
   double sum = 0, total = 0;
   for (std::size_t k = 0; k < point.vertices().size(); ++k) {
@@ -280,8 +282,8 @@ View look(const Problem& problem, Vertex from, double radius) {
   return view;
 }
 
-/// exp of `share` times the center: the vertex of the nearest coordinates, found by going from neighbour to neighbour,
-/// since coordinates as short occur beyond the cut locus as well.
+/// exp of `share` times the center: the vertex with the nearest coordinates. The search walks from neighbor to neighbor,
+/// because beyond the cut locus other vertices have similar coordinates.
 Vertex follow(const TangentGraph& graph, const View& view, Vertex from, double share) {
   const auto away = [&](Index i) {
     const auto phi = view.map.coordinates(Vertex(i));
@@ -298,7 +300,7 @@ Vertex follow(const TangentGraph& graph, const View& view, Vertex from, double s
   for (Index at = -1; at != best;) {
     at = best;
     for (Index j : graph.star(at).neighbors)
-      if (const double r = away(j); r < least) best = j, least = r;  // never so for NaN
+      if (const double r = away(j); r < least) best = j, least = r;  // false for NaN
   }
   return Vertex(best);
 }
@@ -337,7 +339,7 @@ Center search(const Problem& problem, double power, const CenterOptions& options
       for (double& z : best.offset) z *= graph.length_unit();
     }
     best.maps = maps;
-    // A vertex seen before would close a cycle: then go half as far.
+    // A step to a visited vertex would close a cycle; halve it.
     Vertex next = follow(graph, here, x, share);
     while (next != x && std::find(visited.begin(), visited.end(), next) != visited.end()) {
       share /= 2;

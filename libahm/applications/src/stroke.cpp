@@ -12,10 +12,10 @@
 namespace ahm {
 namespace {
 
-/// An edge of the path seen from vertex `from`.
+/// An edge of the path, as stored at vertex `from`.
 struct Step {
-  Vec2 log;       ///< in the frame of `from`, world units
-  bool mirrored;  ///< the two frames are oppositely oriented
+  Vec2 log;       ///< logarithm of the edge in the frame of `from`, world units
+  bool mirrored;  ///< the frames of its two vertices have opposite orientations
 };
 
 Step step(const TangentGraph& graph, Vertex from, Vertex to) {
@@ -26,10 +26,10 @@ Step step(const TangentGraph& graph, Vertex from, Vertex to) {
     return {{star.log(e)[0] * unit, star.log(e)[1] * unit}, star.transport(e).reflects()};
   }
   throw InvalidArgument("vertices " + std::to_string(from.index) + " and " + std::to_string(to.index) +
-                        " follow each other in 'path' but are no neighbours in the graph; add the vertices between");
+                        " are consecutive in 'path' but not neighbors in the graph; add the vertices between them");
 }
 
-/// Direction that halves the angle between arriving and leaving; either may be zero at an end.
+/// Unit direction that bisects the angle between arriving and leaving. At an end of the curve one of them is zero.
 Vec2 bisector(const Vec2& arriving, const Vec2& leaving, std::size_t k) {
   Vec2 sum{};
   for (const Vec2& v : {arriving, leaving})
@@ -37,16 +37,16 @@ Vec2 bisector(const Vec2& arriving, const Vec2& leaving, std::size_t k) {
       for (int a = 0; a < 2; ++a) sum[a] += v[a] / norm;
   const double norm = length(sum);
   if (!(norm > 1e-6))
-    throw InvalidArgument("the curve, or its image in the plane, turns back or stands still at point " +
+    throw InvalidArgument("the curve, or its image in the plane, turns back or does not advance at point " +
                           std::to_string(k) + "; split it there");
   return {sum[0] / norm, sum[1] / norm};
 }
 
-/// What the graph knows of the curve at each vertex.
+/// The curve at each vertex of its path.
 struct Curve {
   std::vector<Vec2> tangents;  ///< in the frame of the vertex, unit length
-  std::vector<double> sides;   ///< +1 or -1: whether left is left in the vertex's frame
-  std::vector<double> s;       ///< arclength
+  std::vector<double> sides;   ///< +1: the left side of the curve is left in the vertex's frame; -1: it is right
+  std::vector<double> s;       ///< arclengths
   std::vector<double> weights;
   double length = 0;
 };
@@ -91,11 +91,12 @@ Curve follow(const TangentGraph& graph, std::span<const Vertex> path, bool close
     if (there.mirrored) side = -side;
   }
   if (closed && side < 0)
-    throw InvalidArgument("the closed 'path' runs along a one-sided band, so it has no left; leave it open");
+    throw InvalidArgument(
+        "the closed 'path' runs along a one-sided band, so its left side is undefined; use an open path");
   return curve;
 }
 
-/// The u axis is the tangent turned back by the angle that the curve has in the plane of coordinates.
+/// The u axis is the tangent, turned back by the angle of the curve in the plane of coordinates.
 void add_sample(Source& source, Vertex vertex, double weight, const Vec2& z, const Vec2& tangent, double side,
                 const Vec2& direction) {
   const auto point = static_cast<Index>(source.vertices().size());
@@ -120,7 +121,8 @@ void check_points(std::span<const Source> points, std::span<const double> length
                             ", not positive and finite; leave out points that coincide");
 }
 
-/// Each point by half of the lengths of its two segments. @param place_of  called for one point after the other
+/// Weights each point by half of the lengths of its two segments. @param place_of  place_of(k), called in the order of
+/// points
 template <class PlaceOf>
 std::vector<StrokePoint> weighted_by_length(std::span<const Source> points, std::span<const double> lengths,
                                             bool closed, const PlaceOf& place_of) {
@@ -139,7 +141,7 @@ std::vector<StrokePoint> weighted_by_length(std::span<const Source> points, std:
 
 void check_shape(const StrokeOptions& options) {
   if (options.shape == StrokeShape::circle && !options.closed)
-    throw InvalidArgument("shape 'circle' needs a closed curve");
+    throw InvalidArgument("shape 'circle' requires a closed curve");
 }
 
 std::vector<Vec2> directions_of(std::span<const Vec2> positions, std::size_t points, bool closed) {
@@ -186,7 +188,7 @@ Source stroke_source(std::span<const StrokePoint> points) {
     const auto& [point, weight, position, angle] = points[k];
     if (point.dimension() != 2)
       throw InvalidArgument("point " + std::to_string(k) + " is a source of dimension " +
-                            std::to_string(point.dimension().value_or(0)) + ", not 2; give its u axis");
+                            std::to_string(point.dimension().value_or(0)) + ", not 2; set its u axis");
     const double c = std::cos(angle), s = std::sin(angle);
     for (std::size_t i = 0; i < point.vertices().size(); ++i) {
       const auto z = point.offsets().subspan(2 * i, 2), U = point.axes().subspan(4 * i, 4);

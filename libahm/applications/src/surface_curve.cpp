@@ -20,24 +20,24 @@
 
 namespace ahm {
 
-/// A piece of the curve, by its middle.
+/// A piece of the curve, described at its midpoint.
 struct CurvePiece {
   SurfacePoint point;
-  Vec3 arriving, leaving;  ///< directions of the curve there of the segments that end and begin there
-  std::size_t after;       ///< which of the given points
-  double along;            ///< of the line to the next one, in (0, 1)
+  Vec3 arriving, leaving;  ///< directions of the segments that end and begin at `point`
+  std::size_t after;       ///< index of the input point before the piece
+  double along;            ///< share of the line to the next input point, in (0, 1)
   double length;
 };
 
-/// Joins the given points and cuts the lines (see `draw_curve`).
-/// @param curve  gets points, pieces, length, gap, jump and what lines are straight
+/// Joins the input points and cuts the lines into pieces (see `draw_curve`).
+/// @param curve  receives points, pieces, length, gap, jump and the straight lines
 /// @throws InvalidArgument (as `draw_curve`)
 std::vector<CurvePiece> cut_curve(const Surface& surface, std::span<const CurvePoint> given, bool closed,
                                   SurfaceCurve& curve);
 
 namespace {
 
-/// Points this near to a straight line, relative to its length, lie on it.
+/// Points within this distance of a straight line, relative to its length, lie on it.
 constexpr double straight = 1e-11;
 
 bool lies_between(const Vec3& from, const Vec3& at, const Vec3& to) {
@@ -53,7 +53,7 @@ FlatFaces::FlatFaces(const Surface& surface) {
     geodesics.emplace(surface);
   } catch (const Cancelled&) {
     throw;
-  } catch (const Error& e) {  // twisted polygons, faces of no area
+  } catch (const Error& e) {  // twisted polygons, faces without area
     reason = e.what();
   }
 }
@@ -73,17 +73,17 @@ namespace {
 
 constexpr double most_points = 1e6;
 
-/// Mean length of the edges about a point, world units.
+/// Mean length of the edges around a point, world units.
 double edge_at(const Surface& surface, const SurfacePoint& point) {
   return mean_edge(surface.graph(), surface.source(point).source.vertices());
 }
 
-/// A place on a line: the directions of the segments that end and begin there; inside of one both are its own.
+/// A place on a line, with the directions of the segments that end and begin there. Inside a segment both are equal.
 struct PlaceOnLine {
   Vec3 position, arriving, leaving;
 };
 
-/// A line of corners by arclength.
+/// A polyline, parameterized by arclength.
 class Line {
  public:
   explicit Line(std::span<const Vec3> corners) {
@@ -96,7 +96,7 @@ class Line {
   }
   double length() const { return begins_.empty() ? 0 : begins_.back(); }
   std::span<const Vec3> corners() const { return corners_; }
-  /// @param s  within the length, which is not 0
+  /// @param s  in [0, length], length > 0
   PlaceOnLine at(double s) const {
     const double near = same_place * length();
     const auto next = std::ranges::lower_bound(begins_, s - near) - begins_.begin();
@@ -108,7 +108,7 @@ class Line {
   }
 
  private:
-  /// Share of the length by which a place may miss a corner.
+  /// A place this near to a corner, as a share of the length, is the corner.
   static constexpr double same_place = 1e-9;
 
   Vec3 direction(std::size_t end) const {
@@ -116,16 +116,17 @@ class Line {
   }
 
   std::vector<Vec3> corners_;
-  std::vector<double> begins_;  ///< arclengths of the corners
+  std::vector<double> begins_;  ///< arclength of each corner
 };
 
-/// Joins points by shortest paths: over flat faces, and without faces over tangent planes.
+/// Joins points by shortest paths: over flat faces or, on surfaces without faces, over tangent planes.
 class Joiner {
  public:
   explicit Joiner(const Surface& surface)
       : surface_(surface), over_planes_(surface.faces().size() == 0), faces_(surface), reason_(faces_.reason) {}
 
-  /// Corners of the shortest path; none where the surface has no paths, or does not join the points: then `reason` tells why.
+  /// Corners of the shortest path. Empty if the surface has no paths or does not connect the points; `reason` returns
+  /// which.
   std::vector<Vec3> path(const SurfacePoint& from, const SurfacePoint& to) {
     std::vector<Vec3> corners;
     if (over_planes_) {
@@ -139,7 +140,7 @@ class Joiner {
     if (corners.empty()) reason_ = "the surface does not connect their ends";
     return corners;
   }
-  /// The same of points nearby: where it bends. None where there are no flat faces.
+  /// Bends of the locally shortest path between nearby points. Empty where there are no flat faces.
   std::vector<Vec3> short_path(const SurfacePoint& from, const SurfacePoint& to) const {
     if (!faces_.geodesics) return {};
     return bends(*faces_.geodesics, faces_.geodesics->locally_shortest_path(from, to));
@@ -161,9 +162,9 @@ double length_of(const std::vector<Vec3>& corners) {
 
 [[noreturn]] void refuse_length(double length, double edge) {
   throw InvalidArgument("curve_too_long",
-                        "the curve is " + detail::number(length) + " long, more than " + detail::number(most_points) +
-                            " times half an edge length of " + detail::number(edge),
-                        "is it in the units of the surface?");
+                        "the curve has length " + detail::number(length) + ", more than " +
+                            detail::number(most_points) + " times half an edge length of " + detail::number(edge),
+                        "check that it is in the units of the surface");
 }
 
 [[noreturn]] void refuse_turn(const Vec3& p) {
@@ -173,16 +174,16 @@ double length_of(const std::vector<Vec3>& corners) {
       "split it there");
 }
 
-/// One line between given points, or several short ones: together one piece.
+/// One line between input points, or several short lines that form one piece together.
 struct Stretch {
   std::vector<Vec3> corners;
-  std::vector<std::size_t> lines;  ///< the numbers of the given points that its lines begin at
-  std::vector<double> ends;        ///< and the arclengths where they end
-  bool is_path = false;            ///< along the surface, not only near to it
+  std::vector<std::size_t> lines;  ///< indices of the input points where its lines begin
+  std::vector<double> ends;        ///< arclengths where its lines end
+  bool is_path = false;            ///< on the surface, not only near it
 };
 
-/// Cuts a curve into pieces of about half of the edges there, so that pieces in one face are few, and as many beside other
-/// parts of a surface as without these.
+/// Cuts a curve into pieces of about half of the local edge length. A face contains few pieces, and distant parts of the
+/// surface do not change their number.
 class CurveCutter {
  public:
   CurveCutter(const Surface& surface, std::span<const CurvePoint> given, bool closed, SurfaceCurve& curve)
@@ -226,7 +227,7 @@ class CurveCutter {
     }
     cut(open);
     if (closed_ && begin_) check_turn(*last_, *begin_, corners_.front());
-    if (closed_ && curve_.points.size() > 1) curve_.points.pop_back();  // the first again
+    if (closed_ && curve_.points.size() > 1) curve_.points.pop_back();  // the first one, repeated
     const std::size_t needed = closed_ ? 3 : 2;
     if (const std::size_t points = pieces_.size() + (closed_ || corners_.empty() ? 0 : 1); points < needed)
       throw InvalidArgument(
@@ -243,8 +244,9 @@ class CurveCutter {
     return closest;
   }
 
-  /// By the shortest path between two given points, locally shortest between near ones, else by the straight line.
-  /// @param edge  there
+  /// Joins an input point and the next one by a shortest path, or a locally shortest one if they are near; else by a
+  /// straight line.
+  /// @param edge  local edge length, world units
   Stretch join(std::size_t k, double edge) {
     Stretch line{{corners_[k], corners_[k + 1]}, {k}, {}, false};
     const bool is_far = distance(corners_[k], corners_[k + 1]) > 2 * edge;
@@ -299,7 +301,7 @@ class CurveCutter {
       for (const Vec3& corner : line.corners()) add_point(corner);
   }
 
-  /// As one piece, in the direction from their begin to their end.
+  /// Adds short lines as one piece, in the direction from their begin to their end.
   void add_short_lines(const Stretch& stretch, const Line& line) {
     double length = 0;
     for (const std::size_t k : stretch.lines) {
@@ -323,7 +325,7 @@ class CurveCutter {
     pieces_.push_back(std::move(piece));
   }
 
-  /// Ends of pieces, by arclength.
+  /// Arclengths of the ends of pieces.
   std::vector<double> cuts_of(const Line& line) const {
     const double length = line.length();
     std::vector<double> cuts{0};
@@ -332,7 +334,7 @@ class CurveCutter {
       if (!(edge > 0) || static_cast<double>(pieces_.size() + cuts.size()) > most_points) refuse_length(length, edge);
       cuts.push_back(cuts.back() + edge / 2);
     }
-    // The last one or the one before ends nearer to the line's end.
+    // Of the last two cuts, the one nearer to the line's end becomes the end.
     if (cuts.size() > 2 && cuts.back() - length > length - cuts[cuts.size() - 2]) cuts.pop_back();
     const double share = length / cuts.back();
     for (double& cut : cuts) cut *= share;
@@ -348,12 +350,12 @@ class CurveCutter {
   bool closed_;
   SurfaceCurve& curve_;
   Joiner joiner_;
-  std::vector<Vec3> corners_;       ///< the given points in space, closed: and the first again
-  std::vector<SurfacePoint> ends_;  ///< the same on the surface
-  std::vector<Vec3> below_;         ///< where these are
+  std::vector<Vec3> corners_;       ///< input points in space; a closed curve repeats the first
+  std::vector<SurfacePoint> ends_;  ///< the same points on the surface
+  std::vector<Vec3> below_;         ///< positions of `ends_`
   std::vector<CurvePiece> pieces_;
-  std::optional<Vec3> begin_, last_;  ///< how the curve begins, and how its last line ends
-  double least_ = 0;                  ///< points nearer than this coincide
+  std::optional<Vec3> begin_, last_;  ///< first direction of the curve, and last direction of its last line
+  double least_ = 0;                  ///< points nearer than this coincide, world units
 };
 
 }  // namespace
@@ -365,12 +367,12 @@ std::vector<CurvePiece> cut_curve(const Surface& surface, std::span<const CurveP
 
 namespace {
 
-/// Without what is along the normal: a curve may run as steep as noise lets it.
+/// Removes the normal component. On noisy points, a curve may run steeply.
 Vec3 flattened(const Vec3& along, const std::optional<Frame>& frame) {
   return frame ? dot(along, frame->x) * frame->x + dot(along, frame->y) * frame->y : along;
 }
 
-/// The source seen from the other side of the surface.
+/// The source mirrored: seen from the other side of the surface, v is negated.
 Source mirrored(const Source& source) {
   Source result(2);
   for (std::size_t k = 0; k < source.vertices().size(); ++k) {
@@ -384,8 +386,8 @@ Source mirrored(const Source& source) {
   return result;
 }
 
-/// The direction of a curve in the tangent plane of a point. Of two segments that meet there, in faces on either side of an edge, the
-/// one that lies in it.
+/// The direction of a curve in the tangent plane of a point. Where two segments meet on an edge between faces, the one
+/// nearer to that plane is used.
 Vec3 direction_at(const CurvePiece& piece, const std::optional<Frame>& frame) {
   if (!frame) return piece.leaving;
   const double arriving = std::abs(dot(piece.arriving, frame->normal)),
@@ -393,7 +395,7 @@ Vec3 direction_at(const CurvePiece& piece, const std::optional<Frame>& frame) {
   return flattened(arriving < leaving ? piece.arriving : piece.leaving, frame);
 }
 
-/// @param place_of  place_of(piece, s, length): where the middle of a piece, at arclength s, lies in the plane of coordinates
+/// @param place_of  place_of(piece, s, length): place of a piece's midpoint, at arclength s, in the plane of coordinates
 template <class PlaceOf>
 SurfaceCurve draw(const Surface& surface, std::span<const CurvePoint> given, bool closed, const PlaceOf& place_of) {
   SurfaceCurve curve;
@@ -402,7 +404,7 @@ SurfaceCurve draw(const Surface& surface, std::span<const CurvePoint> given, boo
   std::vector<StrokePoint> stroke;
   Vec3 normal{};
   double side = 1, s = 0;
-  // Frames that look to different sides of the surface have different left sides.
+  // Frames on opposite sides of the surface have opposite left sides.
   const auto turn_over = [&](const std::optional<Frame>& frame) {
     if (may_mirror && frame && dot(frame->normal, normal) < 0) side = -side;
     if (frame) normal = frame->normal;
@@ -420,20 +422,21 @@ SurfaceCurve draw(const Surface& surface, std::span<const CurvePoint> given, boo
   }
   if (closed) turn_over(curve.first);
   if (side < 0 && closed)
-    throw InvalidArgument("curve_one_sided", "the curve runs along a one-sided band, so it has no left",
-                          "leave it open");
+    throw InvalidArgument("curve_one_sided", "the curve runs along a one-sided band, so its left side is undefined",
+                          "use an open curve");
   curve.source = stroke_source(stroke);
   return curve;
 }
 
-/// Whether coordinates along a curve are those of a flat surface: along straight lines and circles. Beside other bends they are biased.
+/// Whether coordinates are exact next to the curve on a flat surface: they are for straight lines and circles, and biased
+/// at other bends.
 bool has_exact_coordinates(const SurfaceCurve& curve) {
   if (curve.shape->shape == StrokeShape::circle) return true;
   constexpr double straight = 1 - 1e-6;
   return !curve.shape->closed && distance(curve.points.front(), curve.points.back()) >= straight * curve.length;
 }
 
-/// Of a piece and the two beside it, since the curve may be nearest in these.
+/// Length of the longest of a piece and its two neighbors; the nearest point of the curve may be in any of them.
 double longest_about(const SurfaceCurve& curve, std::size_t piece) {
   const std::size_t n = curve.pieces.size();
   const bool closed = curve.shape->closed;
@@ -442,7 +445,7 @@ double longest_about(const SurfaceCurve& curve, std::size_t piece) {
   return std::max({before, curve.pieces[piece], after});
 }
 
-/// From a point with these coordinates to the curve, in the plane of coordinates.
+/// Distance of a point with these coordinates from the curve, in the plane of coordinates.
 double distance_from_curve(double u, double v, double length, const StrokeOptions& shape) {
   if (shape.shape == StrokeShape::circle) return std::abs(std::hypot(u, v) - length / (2 * std::numbers::pi));
   return shape.closed ? std::abs(v) : std::hypot(std::max({0.0, -u, u - length}), v);
@@ -461,7 +464,8 @@ SurfaceCurve draw_curve(const Surface& surface, std::span<const CurvePoint> give
 
 SurfaceCurve draw_curve(const Surface& surface, std::span<const CurvePoint> given, std::span<const Vec2> positions,
                         bool closed) {
-  directions_of(positions, given.size(), closed);  // of corners; inside the lines they are theirs
+  directions_of(positions, given.size(), closed);  // checks the positions; the directions inside the lines are used
+                                                   // below
   return draw(surface, given, closed, [&](const CurvePiece& piece, double, double) {
     const Vec2 &from = positions[piece.after], &to = positions[(piece.after + 1) % positions.size()];
     const Vec2 direction = to - from;
@@ -475,12 +479,12 @@ RowLogMap rows_from_curve(const Surface& surface, const LogMap& map, const Surfa
   RowLogMap rows = surface.to_rows(map);
   rows.angle.clear();
   const bool is_exact = map.method() == Method::exact, is_flat = curve.shape && has_exact_coordinates(curve);
-  // By so much of the distance coordinates may be nearer to the truth than a front from samples.
+  // Distances may follow the coordinates by this share, where coordinates are more accurate than a front from samples.
   const double slack = is_exact ? 0 : is_flat ? 0.015 : surface.graph().is_delaunay() ? 0 : 0.005;
   for (std::size_t i = 0; i < rows.u.size(); ++i) {
     if (curve.shape && rows.vertex[i] && !std::isnan(rows.distance[i])) {
-      // Between its samples the curve is nearer by no more than half a piece makes it, before the first and after the last by half a
-      // piece; how much of that, the coordinates tell.
+      // The distance from samples is too long: beyond an end of the curve by up to half a piece, elsewhere by what half a
+      // piece along the curve changes. The coordinates determine by how much.
       const double from_samples = rows.distance[i], u = rows.u[i], v = rows.v[i];
       const Index nearest = map.nearest()[rows.vertex[i]->index];
       const Vec2& sample = curve.samples[nearest].position;

@@ -1,5 +1,5 @@
 /// \file
-/// Shortest paths between points of a surface: over flat faces where it has them.
+/// Shortest paths between points of a surface, over flat faces if there are any.
 #pragma once
 
 #include <optional>
@@ -10,16 +10,16 @@
 
 namespace ahm {
 
-/// The layout of a surface's faces; none where it has none that are flat, or no positions, and why.
+/// Geodesics over the flat faces of a surface; none, and the reason, if it has no flat faces or no positions.
 struct FlatFaces {
   explicit FlatFaces(const Surface& surface);
 
   std::optional<ExactGeodesics> geodesics;
-  std::string reason;  ///< the message of `Surface::flat_triangles`; empty: of a surface without faces or positions
+  std::string reason;  ///< message of `Surface::flat_triangles`; empty for a surface without faces or positions
 };
 
-/// The points of a path in space, without those on the straight line between their neighbours. The first and the last
-/// stay.
+/// The points in space where a path bends, with its first and last point. Points on the straight line between their
+/// neighbors are left out.
 std::vector<Vec3> bends(const ExactGeodesics& geodesics, const exact::GeodesicPath& path);
 
 }  // namespace ahm

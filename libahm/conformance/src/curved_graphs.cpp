@@ -15,13 +15,13 @@
 namespace ahm::test {
 namespace {
 
-/// A unit vector at right angles to a unit vector.
+/// A unit vector perpendicular to a unit vector.
 Vec3 beside(const Vec3& p) {
   const double r = std::hypot(p[0], p[1]);
   return r > 1e-6 ? Vec3{-p[1] / r, p[0] / r, 0} : Vec3{0, -p[2], p[1]};
 }
 
-/// A vector carried by the least rotation that takes unit vector `from` to unit vector `to`.
+/// A vector rotated by the smallest rotation from unit vector `from` to unit vector `to`.
 Vec3 carried(const Vec3& from, const Vec3& to, const Vec3& vector) {
   const Vec3 axis = cross(from, to), once = cross(axis, vector), twice = cross(axis, once);
   const double scale = 1 / (1 + dot(from, to));
@@ -29,7 +29,8 @@ Vec3 carried(const Vec3& from, const Vec3& to, const Vec3& vector) {
           vector[2] + once[2] + scale * twice[2]};
 }
 
-/// The `count` points nearest to point i of points that lie in order of z: from i on both ways, until z alone is too far.
+/// The `count` nearest points of point i. Points are sorted by z, so the search from i in both directions ends when z alone
+/// is too far.
 std::vector<Index> nearest_by_z(const std::vector<Vec3>& points, Index i, std::size_t count) {
   std::vector<std::pair<double, Index>> found;
   auto worth_it = [&](Index j) {
@@ -49,7 +50,7 @@ std::vector<Index> nearest_by_z(const std::vector<Vec3>& points, Index i, std::s
   return result;
 }
 
-/// Rotations about the x and z axes of space, one after the other.
+/// A rotation about the z axis of space, then one about the x axis.
 Matrix small_rotation(double about_x, double about_z) {
   const double c = std::cos(about_x), s = std::sin(about_x), k = std::cos(about_z), t = std::sin(about_z);
   return product(3, Matrix{1, 0, 0, 0, c, -s, 0, s, c}, Matrix{k, -t, 0, t, k, 0, 0, 0, 1});

@@ -32,7 +32,7 @@ Matrix random_frame(int d, std::mt19937_64& random, bool mirror) {
     for (int c = 0; c < d; ++c) norm += Q[a * d + c] * Q[a * d + c];
     for (int c = 0; c < d; ++c) Q[a * d + c] /= std::sqrt(norm);
   }
-  // Make it a rotation first, then mirror when asked.
+  // Make the determinant positive, or negative if `mirror`.
   double determinant = 1;
   if (d == 1) determinant = Q[0];
   if (d == 2) determinant = Q[0] * Q[3] - Q[1] * Q[2];
@@ -115,7 +115,7 @@ FlatGraph flat_graph(int d, std::vector<double> positions, const std::vector<Pai
     const auto log = g.exact(e.from, e.to);
     data.logs.insert(data.logs.end(), log.begin(), log.end());
     mean += std::hypot(log[0], d > 1 ? log[1] : 0.0, d > 2 ? log[2] : 0.0) / static_cast<double>(directed.size());
-    // R_ji takes components in frame j (= e.to) to components in frame i (= e.from): F_i F_j^T.
+    // R_ji maps components in frame j (= e.to) to components in frame i (= e.from): F_i F_j^T.
     std::vector<double> R(static_cast<std::size_t>(d) * d, 0.0);
     for (int a = 0; a < d; ++a)
       for (int b = 0; b < d; ++b)
@@ -187,7 +187,7 @@ FlatGraph strip(Index length) {
       if (x + 1 < length) edges.push_back({x * 3 + y, x * 3 + y + 3});
     }
   FlatGraph g = flat_graph(2, std::move(positions), edges, TransportKind::rotation2, false, 9);
-  // Even weights and masses, so that heat decays evenly: the reach is known.
+  // With equal weights and masses heat decays evenly, so its reach is known.
   std::fill(g.data.weights.begin(), g.data.weights.end(), 1.0);
   std::fill(g.data.masses.begin(), g.data.masses.end(), 1.0);
   return g;

@@ -28,7 +28,7 @@ LogMap map_of(const TangentGraph& graph, const Source& source, Variant variant =
   return LogMapSolver(graph).solve(source, {.variant = variant});
 }
 
-/// A row-major matrix or its transpose times a vector of d numbers.
+/// The product of a row-major matrix, or of its transpose, with a vector of d numbers.
 std::vector<double> times(std::span<const double> matrix, std::span<const double> vector, bool transposed) {
   const std::size_t d = vector.size();
   std::vector<double> result(d, 0.0);
@@ -37,7 +37,7 @@ std::vector<double> times(std::span<const double> matrix, std::span<const double
   return result;
 }
 
-/// R_ji of an edge as d x d entries.
+/// R_ji of an edge as a d x d matrix.
 std::vector<double> transport_block(const TangentGraph& graph, const Star& star, std::size_t edge) {
   const auto d = static_cast<std::size_t>(graph.dimension());
   if (graph.transport_kind() == TransportKind::block) {
@@ -48,10 +48,11 @@ std::vector<double> transport_block(const TangentGraph& graph, const Star& star,
   return {c, -s, s, c};
 }
 
-/// A point beside vertex p: p and its neighbours, with unequal weights and the frame of p carried along the edges.
+/// A point near vertex p, described by p and its neighbors with unequal weights. Their axes are the frame of p, transported
+/// along the edges.
 struct PointBeside {
   Source source;
-  std::vector<double> offset;  ///< of the point from p, in the frame of p, world units
+  std::vector<double> offset;  ///< offset of the point from p, in the frame of p, world units
 };
 
 PointBeside point_beside(const TangentGraph& graph, Index p) {
@@ -93,8 +94,8 @@ void has_non_negative_weights(const TangentGraph& graph) {
 }
 
 void closes_every_loop_where_it_is_flat(const TangentGraph& graph) {
-  // On a flat graph the log map of the solver must satisfy every edge: phi_j - phi_i = e_ij in the source's frame, so
-  // that the residual of Alg. 2 vanishes whatever the weights.
+  // On a flat graph the log map satisfies every edge, phi_j - phi_i = e_ij in the source's frame, so the residual of Alg. 2
+  // is zero for any weights.
   LogMapSolver solver(graph);
   const Index source = graph.size() / 2;
   for (Variant variant : all_variants) {
@@ -163,7 +164,7 @@ void agrees_with_the_papers_full_operator(const TangentGraph& graph) {
     const std::vector<double> reference = reference_log_map(graph, 3, variant);
     double largest = 0;
     for (double x : reference) largest = std::max(largest, std::abs(x));
-    // At the source itself the vector is 0, where the paper has the mean of what heat brings back.
+    // At the source the vector is 0. The paper has the mean of the heat that returns there.
     const auto d = static_cast<std::size_t>(graph.dimension());
     for (std::size_t k = 0; k < reference.size(); ++k)
       EXPECT_NEAR(map.coordinates()[k], k / d == 3 ? 0 : reference[k], 1e-11 * largest);

@@ -1,5 +1,5 @@
 /// \file
-/// The icosahedron: twelve corners, twenty faces seen counter-clockwise from outside.
+/// The icosahedron: twelve corners and twenty faces, counter-clockwise as seen from outside.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace ahm::test {
 
-/// Edges of length 2.
+/// Corners of an icosahedron with edges of length 2.
 inline std::array<Vec3, 12> icosahedron_corners() {
   const double g = (1 + std::sqrt(5.0)) / 2;
   return {{{-1, g, 0},

@@ -1,5 +1,5 @@
 /// \file
-/// Square matrices of a few rows, row major.
+/// Small square matrices, row major.
 #pragma once
 
 #include <cmath>
@@ -26,7 +26,7 @@ inline Matrix transposed(int d, std::span<const double> A) {
   return T;
 }
 
-/// A random rotation of d <= 3 dimensions by Gram-Schmidt; `mirror` flips its last row.
+/// A random rotation in d <= 3 dimensions, by Gram-Schmidt. `mirror` flips its last row.
 Matrix random_frame(int d, std::mt19937_64& random, bool mirror);
 
 }  // namespace ahm::test

@@ -21,7 +21,7 @@ PaperBand paper_band(Index around, Index across, unsigned seed) {
     return i < around ? p : std::array{p[0] + 1, 0.2 - p[1]};
   };
   auto add = [&](std::array<std::array<Index, 2>, 3> corners) {
-    // Faces come in both orientations.
+    // Faces have random orientations.
     if (random() % 2) std::swap(corners[1], corners[2]);
     band.faces.emplace_back();
     band.lengths.emplace_back();

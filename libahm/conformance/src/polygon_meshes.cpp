@@ -13,13 +13,13 @@
 namespace ahm::test {
 namespace {
 
-/// A corner of a cell: where it lies, and which line the side that leaves it is on.
+/// A corner of a cell: its position, and the line of the side that begins there.
 struct CellCorner {
   double x, y;
   Index line;
 };
 
-/// The part of a convex cell with a x + b y <= c; the new side is on `line`.
+/// The part of a convex cell where a x + b y <= c. The new side has the number `line`.
 std::vector<CellCorner> clipped(const std::vector<CellCorner>& cell, double a, double b, double c, Index line) {
   std::vector<CellCorner> result;
   for (std::size_t k = 0; k < cell.size(); ++k) {
@@ -33,7 +33,7 @@ std::vector<CellCorner> clipped(const std::vector<CellCorner>& cell, double a, d
   return result;
 }
 
-/// Corners of cells are known by the three lines or sites that meet there.
+/// Adds cells as faces. A corner is identified by the three lines or sites that meet there.
 class CellCorners {
  public:
   explicit CellCorners(Polygons& mesh) : mesh_(mesh) {}
@@ -55,7 +55,7 @@ class CellCorners {
   std::map<std::array<Index, 3>, Index> number_;
 };
 
-/// Appends the vertices of a (side + 1) x (side + 1) grid; returns the number of the vertex in column x and row y.
+/// Appends the vertices of an (nx + 1) x (ny + 1) grid. The result returns the number of the vertex in column x and row y.
 std::function<Index(Index, Index)> grid_vertices(Polygons& mesh, Index nx, Index ny,
                                                  const std::function<Vec2(Index, Index)>& place) {
   for (Index y = 0; y <= ny; ++y)
@@ -232,7 +232,7 @@ Polygons voronoi_sphere(Index cells, unsigned seed) {
   const double reach = std::min(2.0, 12 / std::sqrt(cells));
   for (Index s = 0; s < cells; ++s) {
     const Vec3 p = site[s], x = unit(cross(p, std::abs(p[0]) < 0.9 ? Vec3{1, 0, 0} : Vec3{0, 1, 0})), y = cross(p, x);
-    // In the plane that touches the sphere at p.
+    // The cell in the tangent plane of the sphere at p.
     std::vector<CellCorner> cell{{-9, -9, -1}, {9, -9, -2}, {9, 9, -3}, {-9, 9, -4}};
     for (Index o = 0; o < cells; ++o) {
       if (o == s || dot(minus(site[o], p), minus(site[o], p)) > reach * reach) continue;
@@ -247,7 +247,7 @@ Polygons voronoi_sphere(Index cells, unsigned seed) {
 }
 
 Polygons dual_sphere(Index parts) {
-  // The icosahedron's triangles, cut; a corner of the dual for each small triangle, a face for each vertex.
+  // The dual of the cut icosahedron has a corner for each small triangle and a face for each vertex.
   const auto ico = icosahedron_corners();
   std::vector<std::array<int, 3>> sides;
   for (int a = 0; a < 12; ++a)

@@ -18,7 +18,7 @@ Matrix transport(const TangentGraph& graph, const Star& star, std::size_t e) {
   return Eigen::Map<const Eigen::Matrix<double, -1, -1, Eigen::RowMajor>>(star.transports.data() + e * d * d, d, d);
 }
 
-/// (M + tau L) for fibres of `size` numbers; `carry(i, star, e)` is the transport from neighbour e to vertex i.
+/// M + tau L for fibers of `size` numbers. `carry(i, star, e)` is the transport from neighbor e to vertex i.
 Eigen::SparseMatrix<double> diffusion(const TangentGraph& graph, double tau, int size,
                                       const std::function<Matrix(Index, const Star&, std::size_t)>& carry) {
   std::vector<Eigen::Triplet<double>> entries;

@@ -10,7 +10,7 @@ namespace {
 
 using std::numbers::pi;
 
-/// A plane in general position.
+/// A point (u, v) of a plane in general position.
 Vec3 tilted(double u, double v) {
   const Vec3 x{2.0 / 3, -1.0 / 3, 2.0 / 3}, y{2.0 / 3, 2.0 / 3, -1.0 / 3};
   return {u * x[0] + v * y[0] + 3, u * x[1] + v * y[1], u * x[2] + v * y[2] - 1};
@@ -21,7 +21,7 @@ void tilt(Mesh& mesh) {
   for (const auto& p : mesh.plane) mesh.positions.push_back(tilted(p[0], p[1]));
 }
 
-/// The quad a b c d as two triangles, cut along its diagonal ac or bd.
+/// Adds the quad a b c d as two triangles, cut along its diagonal ac or bd.
 void add_quad(Mesh& mesh, Index a, Index b, Index c, Index d, bool cut_ac) {
   if (cut_ac) {
     mesh.faces.push_back({a, b, c});
@@ -32,8 +32,8 @@ void add_quad(Mesh& mesh, Index a, Index b, Index c, Index d, bool cut_ac) {
   }
 }
 
-/// A jittered grid of side x side points in the unit square, random diagonals. Border points stay on the border. Up to
-/// 0.25 spacings of jitter every quad is convex.
+/// A jittered grid of side x side points in the unit square with random diagonals. Border points stay on the border. With
+/// jitter up to 0.25 spacings every quad is convex.
 Mesh jittered_grid(Index side, unsigned seed, double jitter_u = 0.24, double jitter_v = 0.24) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
@@ -52,12 +52,12 @@ Mesh jittered_grid(Index side, unsigned seed, double jitter_u = 0.24, double jit
   return mesh;
 }
 
-/// The plane as z = 0.
+/// Embeds the plane as z = 0.
 void lift(Mesh& mesh) {
   for (const auto& p : mesh.plane) mesh.positions.push_back({p[0], p[1], 0.0});
 }
 
-/// Drops faces, and the vertices that no face uses then.
+/// Keeps the marked faces and the vertices that they use.
 void keep_faces(Mesh& mesh, const std::vector<bool>& keep) {
   std::vector<Triangle> faces;
   for (std::size_t f = 0; f < keep.size(); ++f)

@@ -1,5 +1,5 @@
 /// \file
-/// Binary numbers, lowest byte first.
+/// Little-endian binary numbers.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace ahm::io {
 
-/// Appends the bytes of a value, lowest first.
+/// Appends the bytes of a value, least significant byte first.
 template <class T>
 void append(std::string& bytes, T value) {
   auto raw = std::bit_cast<std::array<char, sizeof(T)>>(value);
@@ -19,7 +19,7 @@ void append(std::string& bytes, T value) {
   bytes.append(raw.data(), raw.size());
 }
 
-/// The value at a position; the caller has checked that its bytes are there.
+/// The value at a position. Does not check the bounds of `bytes`.
 template <class T>
 T load_at(std::string_view bytes, std::size_t position) {
   std::array<char, sizeof(T)> raw;

@@ -1,5 +1,5 @@
 /// \file
-/// PCD files read through PCL, as a module: PCL's reader brings VTK along, which nobody should wait for who has no PCD file.
+/// Reader of PCD files through PCL, as a module that is loaded on demand: PCL's reader also loads VTK, which slows down startup.
 #pragma once
 
 #include "ahm/io/geometry.hpp"
@@ -7,7 +7,7 @@
 
 namespace ahm::io {
 
-/// What the module pcd offers, under the name ahm_pcd.
+/// Functions of the module pcd, which exports them as `ahm_pcd`.
 struct PcdFunctions {
   Geometry (*read)(const Input& in);
 };

@@ -32,7 +32,7 @@ PrincipalCurvature Paraboloid::curvature() const {
   if (!lu.isInvertible()) return {{unknown, unknown}, {unknown, unknown}};
   const Eigen::Matrix<double, 5, 1> fit = lu.solve(Eigen::Map<const Eigen::Matrix<double, 5, 1>>(right_.data()));
   const double mean = (fit[2] + fit[4]) / 2, half = (fit[2] - fit[4]) / 2, gap = std::hypot(half, fit[3]);
-  // S turns like a vector of twice the angle: the eigenvector of mean + gap lies at half the angle of (half, S_01).
+  // S rotates like a vector of twice the angle: the eigenvector of mean + gap is at half the angle of (half, S_01).
   const double sign = mean < 0 ? -1 : 1, angle = std::atan2(sign * fit[3], sign * half) / 2;
   return {{(mean + sign * gap) / unit_, (mean - sign * gap) / unit_}, {std::cos(angle), std::sin(angle)}};
 }
@@ -49,11 +49,11 @@ Frame frame_of(const TangentGraph& graph, Index vertex, const char* name) {
   const std::optional<Frame> frame = graph.frame(vertex);
   if (!frame)
     throw InvalidArgument(std::string(name) + ": the graph has no frame in space at vertex " + std::to_string(vertex) +
-                          "; use a backend that knows positions");
+                          "; use a backend that provides positions");
   return *frame;
 }
 
-/// Neighbours of neighbours and neighbours, each once, without the vertex itself.
+/// Neighbors and neighbors of neighbors, each once, without the vertex itself.
 void collect_two_rings(const TangentGraph& graph, Index vertex, std::vector<Index>& first, std::vector<Index>& both) {
   const auto neighbors = graph.star(vertex).neighbors;
   first.assign(neighbors.begin(), neighbors.end());
@@ -67,7 +67,7 @@ void collect_two_rings(const TangentGraph& graph, Index vertex, std::vector<Inde
   std::erase(both, vertex);
 }
 
-/// Of a vertex, from the heights of others over its tangent plane.
+/// Curvature at a vertex, from the heights of other points over its tangent plane.
 PrincipalCurvature curvature_by(const Frame& frame, std::span<const Vec3> others) {
   double reach = 0;
   for (const Vec3& p : others) reach = std::max(reach, length(p - frame.origin));
@@ -81,8 +81,8 @@ PrincipalCurvature curvature_by(const Frame& frame, std::span<const Vec3> others
   return fit.curvature();
 }
 
-/// Length of the mean of the neighbours' directions carried to the vertex, as axes (angles count twice): 1 where all are
-/// parallel to each other, near 0 where they are random.
+/// Length of the mean of the neighbors' directions, transported to the vertex and treated as axes (angles doubled). 1 where all
+/// are parallel to each other, near 0 where they are random.
 double agreement_around(const TangentGraph& graph, const PrincipalCurvatures& bend, Index vertex) {
   const Star star = graph.star(vertex);
   double c = 0, s = 0, count = 0;
@@ -96,7 +96,7 @@ double agreement_around(const TangentGraph& graph, const PrincipalCurvatures& be
   return count > 0 ? std::hypot(c, s) / count : 0;
 }
 
-/// With a few digits, for messages.
+/// Formats a number with a few digits, for messages.
 std::string shortly(const char* format, double value) {
   char buffer[32];
   std::snprintf(buffer, sizeof buffer, format, value);
@@ -124,7 +124,7 @@ void check_off_normal(const Vec3& direction, const Vec3& normal, double error, c
   if (!(off >= error))
     throw InvalidArgument("axis_along_normal",
                           "the direction is " + shortly("%.2g", off) + " degrees from the normal " + where +
-                              ", which is known to " + shortly("%.2g", error),
+                              "; the error of the normal in degrees is up to " + shortly("%.2g", error),
                           "choose another one");
 }
 
@@ -184,11 +184,11 @@ Vec3 bending_direction(const TangentGraph& graph, Vertex vertex, unsigned thread
   const auto refuse = [](const std::string& problem) {
     throw InvalidArgument("no_bending_direction", problem, "give a direction");
   };
-  if (std::isnan(first)) refuse("the source has too few neighbours to tell");
+  if (std::isnan(first)) refuse("the source has too few neighbors to fit a curvature");
   const double edge = graph.mean_edge_length() * graph.length_unit();
   if (!(std::abs(first) * edge > 1e-6)) refuse("the surface is flat at the source");
   if (!(std::abs(first - second) > 0.1 * std::abs(first)))
-    refuse("at the source the surface bends alike in all directions (curvatures " + shortly("%.3g", first) + " and " +
+    refuse("at the source the surface bends equally in all directions (curvatures " + shortly("%.3g", first) + " and " +
            shortly("%.3g", second) + ")");
   if (const double agreement = agreement_around(graph, bend, vertex.index); agreement < 0.5)
     refuse("the directions around the source contradict each other (agreement " + shortly("%.2f", agreement) +

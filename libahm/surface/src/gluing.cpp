@@ -1,4 +1,4 @@
-// Contracting edges without length: the half-edges of `GluedMesh` afterwards.
+// Gluing of faces, numbering of vertices, and contraction of edges without length.
 #include "ahm/surface/gluing.hpp"
 
 #include <algorithm>
@@ -29,7 +29,7 @@ bool repeats_a_vertex(std::span<const Index> face, std::vector<Index>& sorted) {
   return std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end();
 }
 
-/// Refuses faces with a fault. @param what  "3 faces" have or do
+/// Throws if there are faces with a fault. @param what  the fault, as the predicate of "3 faces"
 void refuse(std::string_view fault, const std::vector<Index>& wrong, const FaceList& faces, const std::string& what,
             const std::string& advice) {
   if (wrong.empty()) return;
@@ -38,7 +38,7 @@ void refuse(std::string_view fault, const std::vector<Index>& wrong, const FaceL
   throw InvalidGeometry(fault, std::to_string(wrong.size()) + " faces " + what + ": " + list.text(), advice);
 }
 
-/// A side of a face, filed under the smaller of its two vertices.
+/// A side of a face, in the bucket of the smaller of its two vertices.
 struct Side {
   Index high;
   Half half;
@@ -68,7 +68,7 @@ class Gluer {
       }
     }
     sides_ = {};
-    std::sort(duplicates_.begin(), duplicates_.end());  // they meet at every one of their edges
+    std::sort(duplicates_.begin(), duplicates_.end());  // each pair was found at every one of its edges
     duplicates_.erase(std::unique(duplicates_.begin(), duplicates_.end()), duplicates_.end());
     result_.non_manifold_edges = static_cast<Index>(crowded_.count());
   }
@@ -78,7 +78,7 @@ class Gluer {
     ItemList list;
     for (const auto& [later, earlier] : duplicates_)
       list.add("face " + std::to_string(later) + " repeats face " + std::to_string(earlier));
-    throw InvalidGeometry("duplicate_faces", std::to_string(list.count()) + " faces are duplicates: " + list.text(),
+    throw InvalidGeometry("duplicate_faces", std::to_string(list.count()) + " faces have a duplicate: " + list.text(),
                           "remove them");
   }
 
@@ -89,7 +89,7 @@ class Gluer {
                             "repair them, or cut the mesh there with NonManifold::split");
   }
 
-  /// Turns faces over until neighbours agree, component by component.
+  /// Reverses faces until neighbors agree, one component at a time.
   void orient(std::span<const std::uint8_t> counts_as_turned) {
     const auto count = faces_.size();
     result_.reversed.assign(count, 2);
@@ -126,7 +126,7 @@ class Gluer {
   }
   Index tail(Half h) const { return faces_.vertices[h]; }
   Index head(Half h) const { return faces_.vertices[next(h)]; }
-  /// The vertex that follows when the side is walked from its smaller vertex to the larger one.
+  /// The vertex that follows the side, traversed from its smaller vertex to the larger one.
   Index beyond(Half h) const { return tail(h) < head(h) ? head(next(h)) : tail(previous(h)); }
 
   void fill_buckets() {
@@ -138,7 +138,7 @@ class Gluer {
     for (Half h = 0; h < halves; ++h) sides_[fill[std::min(tail(h), head(h))]++] = {std::max(tail(h), head(h)), h};
   }
 
-  /// Whether the faces of two sides of one edge are the same cycle of vertices, in either sense.
+  /// Whether the faces of two sides of one edge are the same cycle of vertices, in either direction.
   bool same_face(Half a, Half b) const {
     if (beyond(a) != beyond(b) || faces_[face_of_[a]].size() != faces_[face_of_[b]].size()) return false;
     const bool alike = tail(a) == tail(b);
@@ -190,7 +190,7 @@ class Gluer {
   Gluing result_;
 };
 
-/// Multiplies by the power of two that brings the largest coordinate into [1, 2); returns its exponent.
+/// Scales by the power of two that brings the largest coordinate into [1, 2); returns its exponent.
 int normalize_scale(std::vector<Vec3>& points) {
   double most = 0;
   for (const Vec3& p : points) most = std::max(most, largest(p));
@@ -288,13 +288,13 @@ NormalizedPositions normalize_positions(std::vector<Vec3> points, std::span<cons
 
 namespace {
 
-/// Fans of faces about the input vertices.
+/// Fans of faces around the input vertices.
 struct Fans {
-  std::vector<Index> of_half;  ///< per half-edge, about its start
-  std::vector<Half> corner;    ///< per fan: its lowest half-edge
-  std::vector<Index> first;    ///< per input vertex: its first fan, -1: none
-  std::vector<Index> later;    ///< the others
-  ItemList pinched;            ///< vertices that have others, each once
+  std::vector<Index> of_half;  ///< fan of each half-edge, around its tail
+  std::vector<Half> corner;    ///< lowest half-edge of each fan
+  std::vector<Index> first;    ///< first fan of each input vertex; -1: none
+  std::vector<Index> later;    ///< all other fans
+  ItemList pinched;            ///< vertices with several fans, each once
 };
 
 Fans find_fans(const HalfEdges& edges, Index vertices, std::span<const std::uint8_t> dropped) {
@@ -336,8 +336,8 @@ GluedMesh::GluedMesh(Index vertices, const FaceList& faces, NonManifold non_mani
   find_parts();
 }
 
-/// Half-edges of the oriented faces, tails still input vertices. Turning a face of m corners over, its first corner staying
-/// first, takes side s to side m - 1 - s.
+/// Builds the half-edges of the oriented faces; tails are still input vertices. Reversing a face of m corners, whose first
+/// corner stays first, moves side s to side m - 1 - s.
 void GluedMesh::build_half_edges(const FaceList& faces, NonManifold non_manifold,
                                  std::span<const std::uint8_t> turned) {
   Gluing gluing = glue(report_.vertices, faces, non_manifold, turned);
@@ -370,7 +370,7 @@ void GluedMesh::build_half_edges(const FaceList& faces, NonManifold non_manifold
   for (Half h = 0; h < halves; ++h) mirrored_[h] = twin_[h] >= 0 && tail_[h] == tail_[twin_[h]];
 }
 
-/// Makes every fan of faces about an input vertex a vertex: first fans are numbered in the order of the input, then the
+/// Makes every fan of faces around an input vertex a vertex. First fans are numbered in the order of the input, then the
 /// others.
 void GluedMesh::number_vertices(NonManifold non_manifold) {
   Fans fans = find_fans(half_edges(), report_.vertices, dropped_);
@@ -438,21 +438,21 @@ std::vector<Index> GluedMesh::given_corners() const {
 
 namespace {
 
-/// Takes faces out of half-edge arrays of triangles.
+/// Removes faces from half-edge arrays of triangles.
 class FaceDropper {
  public:
   FaceDropper(std::vector<Half>& twin, std::vector<std::uint8_t>& mirrored, std::size_t faces)
       : twin_(twin), mirrored_(mirrored), dropped(faces, 0), stand_in(faces, {-1, -1, -1}) {}
 
-  /// Drops the face of a side that is a point now: glues what lies beyond its two other sides.
+  /// Drops the face of a side that has become a point, and glues the faces across its two other sides.
   void collapse(Half side) {
     const Half right = next(side), left = previous(side), beyond_right = twin_[right], beyond_left = twin_[left];
     take_out(side / 3);
-    if (beyond_right == left) return;  // folded onto itself: nothing is beyond
+    if (beyond_right == left) return;  // the face is glued to itself: nothing is beyond
     const bool mirrored_right = is_mirrored(right), mirrors = mirrored_right != is_mirrored(left);
     glue(beyond_right, beyond_left, mirrors);
     glue(beyond_left, beyond_right, mirrors);
-    // Both ends of the side lie at one end of what is beyond, the third corner at the other.
+    // Both ends of the side coincide with one end of the side beyond, the third corner with the other end.
     std::array<Half, 3>& corners = stand_in[side / 3];
     if (beyond_right >= 0) {
       const Half tail = beyond_right, head = next(beyond_right);
@@ -468,7 +468,7 @@ class FaceDropper {
 
   void take_out(Index face) { dropped[face] = 1; }
 
-  /// Leads corners in faces that were dropped later on to faces that were kept.
+  /// Replaces corners in faces that were dropped later by corners in remaining faces.
   void resolve() {
     for (auto face = order_.rbegin(); face != order_.rend(); ++face)
       for (Half& corner : stand_in[*face])
@@ -492,7 +492,7 @@ class FaceDropper {
   std::vector<std::array<Half, 3>> stand_in;
 };
 
-/// A face with two sides that are contracted has a third one.
+/// Where two sides of a face are contracted, contracts the third one, too.
 void close_faces(std::vector<std::uint8_t>& contracted, std::span<const Half> twin) {
   std::vector<Index> faces(contracted.size() / 3);
   std::iota(faces.begin(), faces.end(), 0);
@@ -510,7 +510,7 @@ void close_faces(std::vector<std::uint8_t>& contracted, std::span<const Half> tw
   }
 }
 
-/// Whether a face is without a contracted side.
+/// Whether some face has no contracted side.
 bool leaves_a_face(std::span<const std::uint8_t> contracted) {
   for (std::size_t h = 0; h < contracted.size(); h += 3)
     if (!contracted[h] && !contracted[h + 1] && !contracted[h + 2]) return true;
@@ -546,7 +546,7 @@ void GluedMesh::contract(std::vector<std::uint8_t> contracted) {
   renumber_contracted();
 }
 
-/// Numbers vertices and boundary edges again and counts them.
+/// Renumbers the vertices and boundary edges, and recomputes the report.
 void GluedMesh::renumber_contracted() {
   const TopologyReport before = report_;
   report_.boundary_edges = report_.components = report_.boundary_loops = 0;
@@ -568,12 +568,12 @@ void GluedMesh::renumber_contracted() {
   find_parts();
 }
 
-/// Gives the corners of dropped faces vertices, and faces that became points a stand-in.
+/// Assigns vertices to the corners of dropped faces, and replacement corners to faces that became points.
 void GluedMesh::place_dropped_corners() {
   std::vector<Index> dropped, vertex(vertex_of_input_);
   for (Index f = 0; f < face_count(); ++f)
     if (is_dropped(f)) dropped.push_back(f);
-  // Corners in faces without area alone have no vertex: that of the next corner has to do, or any.
+  // Corners that are only in faces without area have no vertex: use that of the next corner, or any.
   for (bool changed = true; changed;) {
     changed = false;
     for (Index f : dropped)

@@ -26,7 +26,7 @@ std::vector<Index> joined_vertices(std::span<const Vec3> positions, const std::o
   return result;
 }
 
-/// Without the corners at the vertex of the corner before.
+/// The corners of a face without those at the same vertex as the corner before.
 std::vector<Index> without_repeats(std::span<const Index> face, const std::vector<Index>& joined) {
   std::vector<Index> corners;
   for (Index v : face)
@@ -46,7 +46,7 @@ void add(std::span<const Index> corners, Index given, RepairedMesh& mesh) {
   mesh.given_face.push_back(given);
 }
 
-/// All faces, or those that are none left out.
+/// All faces, or only those that are not degenerate, as the options require.
 RepairedMesh sound_faces(std::span<const Vec3> positions, const FaceList& faces, const RepairOptions& options) {
   RepairedMesh mesh;
   mesh.joined = joined_vertices(positions, options.weld);
@@ -89,9 +89,9 @@ void drop_duplicates(std::span<const Vec3> positions, RepairedMesh& mesh) {
   mesh.given_face = std::move(rest.given_face);
 }
 
-/// Parts of faces that hang together by edges, by their first face.
+/// A part of the mesh: faces connected over edges, stored at its first face.
 struct Part {
-  double volume = 0;  ///< six times that within it, in units of the mesh's size; outward orientation: positive
+  double volume = 0;  ///< six times the enclosed volume, in units of the mesh's size; positive for outward orientation
   bool closed = true, orientable = true;
 };
 
@@ -118,7 +118,7 @@ class Orientation {
   }
 
  private:
-  /// Every part about its own first corner, so that parts far from each other keep their digits.
+  /// Computes each part's volume about its own first corner, so that parts far from the origin keep their digits.
   void add_volumes(std::span<const Vec3> positions, const RepairedMesh& mesh) {
     double size = 0;
     for (Index v : mesh.face_vertices) size = std::max(size, largest(positions[v]));
@@ -136,10 +136,10 @@ class Orientation {
 
   detail::GluedMesh glued_;
   detail::DisjointSets faces_;
-  std::vector<Part> parts_;  ///< at the root of their faces
+  std::vector<Part> parts_;  ///< per face: valid at the root of each part
 };
 
-/// The first corner of a face stays the first.
+/// Reverses faces. The first corner of a face stays first.
 void orient(std::span<const Vec3> positions, RepairedMesh& mesh) {
   if (mesh.given_face.empty()) return;
   Orientation orientation(positions, mesh);
@@ -161,7 +161,7 @@ std::optional<Index> RepairedMesh::remaining(Index given) const {
 
 RepairedMesh repair_mesh(std::span<const Vec3> positions, const FaceList& faces, const RepairOptions& options) {
   if (options.weld && !(*options.weld >= 0 && std::isfinite(*options.weld)))
-    throw InvalidArgument("weld is " + std::to_string(*options.weld) + "; it must be a length, or 0");
+    throw InvalidArgument("weld is " + std::to_string(*options.weld) + "; it must be finite and >= 0");
   if (const auto faults = detail::find_faults(static_cast<Index>(positions.size()), faces); !faults.outside.empty())
     throw InvalidGeometry("face " + std::to_string(faults.outside.front()) + " has a vertex outside [0, " +
                           std::to_string(positions.size()) + ")");
@@ -181,7 +181,7 @@ RowMap rows_of(const Surface& built, const RepairedMesh& mesh) {
   return RowMap(static_cast<Index>(mesh.joined.size()), built.rows().vertex_count(), pairs);
 }
 
-/// Vertices that no face uses, nor does the one that stands for them.
+/// Number of vertices whose representative is in no face.
 double unreferenced(const RepairedMesh& mesh) {
   std::vector<bool> used(mesh.joined.size(), false);
   for (Index v : mesh.face_vertices) used[v] = true;
@@ -198,7 +198,7 @@ RepairedSurface::RepairedSurface(std::unique_ptr<const Surface> built, std::vect
   if (rows != mesh_.joined.size() || rows != positions_.size())
     throw InvalidArgument("the surface has " + std::to_string(rows) + " rows, the repaired mesh " +
                           std::to_string(mesh_.joined.size()) + " vertices and " + std::to_string(positions_.size()) +
-                          " positions");
+                          " positions; these numbers must agree");
   rows_ = rows_of(*built_, mesh_);
 }
 

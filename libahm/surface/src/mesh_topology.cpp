@@ -9,7 +9,7 @@
 namespace ahm {
 namespace {
 
-/// Some faces of a mesh, and their numbers there.
+/// Some faces of a mesh, with their numbers in it.
 struct Remaining {
   std::vector<Offset> begin{0};
   std::vector<Index> vertices, number;
@@ -17,7 +17,7 @@ struct Remaining {
   FaceList faces() const { return {begin, vertices}; }
 };
 
-/// The faces without those that are listed.
+/// The faces that are not left out.
 Remaining without(const FaceList& faces, const std::vector<bool>& left_out) {
   Remaining result;
   for (std::size_t f = 0; f < faces.size(); ++f) {

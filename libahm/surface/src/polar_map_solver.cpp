@@ -14,8 +14,8 @@
 
 namespace ahm::detail {
 
-/// Vertices and the axes of their tangent planes are those of the surface's graph. All weights and masses are 1: it is no graph to
-/// solve on. Vertices without triangles have no edges.
+/// The edges of flat triangles as a graph, with the vertices and tangent axes of the surface's graph. All weights and masses
+/// are 1: the graph is not meant for solving. Vertices without triangles have no edges.
 CsrGraph flat_graph(const FlatTriangles& flat);
 
 namespace {
@@ -39,7 +39,7 @@ class SideAngles {
       });
   }
 
-  /// Calls body(corner, angle of its right side, of its left side) counterclockwise.
+  /// Calls body(corner, angle of its right side, angle of its left side) counterclockwise.
   template <class Body>
   void for_each_corner(Index vertex, const Body& body) const {
     const exact::PolyhedralSurface& surface = flat_.surface;
@@ -59,7 +59,7 @@ class SideAngles {
 
   double at_tail(Half side) const { return at_tail_[side]; }
   double at_head(Half side) const { return at_head_[side]; }
-  /// Whether the frames of the ends of a side see its triangle from different sides.
+  /// Whether the frames of the two ends of a side have opposite orientations relative to its triangle.
   bool reflects(Half side) const { return turns_back_[side] != turns_back_[exact::next(side)]; }
 
  private:
@@ -67,10 +67,10 @@ class SideAngles {
 
   const FlatTriangles& flat_;
   std::vector<double> at_tail_, at_head_;
-  std::vector<char> turns_back_;  ///< of the corner at the tail: whether its triangle is clockwise in the frame
+  std::vector<char> turns_back_;  ///< per corner: whether its triangle is clockwise in the frame of the vertex
 };
 
-/// An edge as the vertex sees it where it starts.
+/// A directed edge in the frame of its first vertex.
 struct Edge {
   Index to;
   double length, angle, angle_there;
@@ -81,7 +81,7 @@ void append(CsrGraphData& graph, const Edge& edge) {
   graph.neighbors.push_back(edge.to);
   graph.weights.push_back(1);
   graph.logs.insert(graph.logs.end(), {edge.length * std::cos(edge.angle), edge.length * std::sin(edge.angle)});
-  // Takes the direction back along the edge, there, to that along it, here.
+  // The transport maps the edge's direction in the frame of `to`, angle_there + pi, to its direction in this frame.
   const double side = edge.reflects ? -1 : 1, turn = edge.angle - side * (edge.angle_there + std::numbers::pi);
   const double c = std::cos(turn), s = std::sin(turn);
   if (graph.kind == TransportKind::rotation2)
@@ -124,13 +124,15 @@ CsrGraph flat_graph(const FlatTriangles& flat) {
 namespace ahm {
 namespace {
 
-/// At 8 windows per vertex the median map of real meshes is right to 0.02 of the distance at the 95th percentile (docs/concepts/accuracy.md). The
-/// least number takes about 15 ms: up to some thousand vertices windows cover the surface.
+/// At 8 windows per vertex the median map of real meshes has an error of 0.02 of the distance at the 95th percentile
+/// (docs/concepts/accuracy.md). The minimum takes about 15 ms; with it, windows cover surfaces of up to a few thousand
+/// vertices.
 constexpr Offset windows_per_vertex = 8, least_windows = Offset{1} << 17;
 
-/// What a front over the triangles of a sheet has found, for a front over the graph. The triangles are as noisy as the points, so
-/// that nothing there is exact. Expected errors are those of another front, which started at the source without windows, and the
-/// difference to it over the root of 2, as of two estimates that are equally good.
+/// Converts the result of a front over the triangles of a sheet to seeds of a front over the graph. The triangles are as noisy
+/// as the points, so the seeds are not exact. Their expected error combines the error of `other`, a front from the source
+/// without windows, with the difference to it. The difference is divided by the square root of 2, as for two equally good
+/// estimates.
 std::vector<Wavefront::Seed> found_by(const Wavefront& front, const Wavefront& other, bool frames) {
   std::vector<Wavefront::Seed> seeds;
   for (Index i = 0; i < front.graph().size(); ++i) {
@@ -155,7 +157,7 @@ PolarMapSolver::PolarMapSolver(const TangentGraph& graph, const PolarSolverOptio
     throw InvalidArgument(
         "dimension_not_2",
         "a polar map needs a graph of dimension 2; this one has dimension " + std::to_string(graph.dimension()),
-        "map it by heat");
+        "use the heat method");
   stars_ = Wavefront::one_rings(graph, options.threads, false);
 }
 
@@ -174,7 +176,7 @@ PolarMapSolver::PolarMapSolver(const Surface& surface, const PolarSolverOptions&
   }
 }
 
-/// @param seeds  seeds(options): exact polar coordinates around the source
+/// @param seeds  seeds(options) returns exact polar coordinates around the source
 template <class Seeds>
 LogMap PolarMapSolver::seeded_map(const Source& source, const PolarMapOptions& options, const Seeds& seeds) const {
   return detail::with_memory_check("a polar map", [&] {
@@ -185,11 +187,11 @@ LogMap PolarMapSolver::seeded_map(const Source& source, const PolarMapOptions& o
       exact = seeds(ExactMapOptions{
           .radius = options.radius, .max_windows = windows_, .frames = options.frames, .progress = options.progress});
     } catch (
-        const InvalidGeometry&) {  // windows lost in needles, a source outside of the triangles: from the source, then
+        const InvalidGeometry&) {  // windows lost in needles, or a source outside of the triangles: start at the source
     }
     const auto run_from = [&](Wavefront& over) {
       if (!exact.empty()) {
-        // Where the front goes on it needs its focusing, and its orientation where that may differ.
+        // Beyond the seeds the front needs its focusing, and its orientation where transports may reflect.
         const double farthest = std::ranges::max_element(exact, {}, &Wavefront::Seed::distance)->distance;
         const bool goes_on = exact.size() < static_cast<std::size_t>(graph_->size());
         if (goes_on || over.graph().transport_layout().may_reflect()) over.run(farthest, options.progress.stop);
@@ -211,7 +213,8 @@ LogMap PolarMapSolver::seeded_map(const Source& source, const PolarMapOptions& o
 
 LogMap PolarMapSolver::log_map(const SurfacePoint& source, const std::optional<Vec3>& u_axis,
                                const PolarMapOptions& options) const {
-  if (surface_ == nullptr) throw InvalidArgument("the solver is for a graph; a point of a surface needs its surface");
+  if (surface_ == nullptr)
+    throw InvalidArgument("the solver was built for a graph; for points of a surface build it for the surface");
   return seeded_map(surface_->source(source, u_axis).source, options, [&](const ExactMapOptions& exact) {
     return geodesics_ ? geodesics_->seeds(source, u_axis, exact) : std::vector<Wavefront::Seed>();
   });

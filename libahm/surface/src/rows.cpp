@@ -77,7 +77,7 @@ bool has_virtual_vertices(const RowMap& rows) {
   return false;
 }
 
-/// Entries on rows of the input, at most `most` per source (0: all): those on virtual vertices are left out.
+/// Keeps the entries on rows of the input, at most `most` per source (0: all). Drops those on virtual vertices.
 RowLocalMaps keep_rows(LocalMaps&& maps, const RowMap& rows, Index most) {
   const auto d = static_cast<std::size_t>(maps.dimension);
   const std::size_t width = maps.transport_width();
@@ -105,7 +105,7 @@ RowLocalMaps keep_rows(LocalMaps&& maps, const RowMap& rows, Index most) {
   return std::move(maps).renamed(std::move(neighbors));
 }
 
-/// @param sources  vertices, or sources
+/// @param sources  vertices or `Source` objects
 template <class From>
 RowLocalMaps to_rows(const Surface& surface, std::span<const From> sources, const LocalMapOptions& options) {
   const RowMap& rows = surface.rows();
@@ -118,7 +118,7 @@ RowLocalMaps to_rows(const Surface& surface, std::span<const From> sources, cons
     const std::vector<Offset> found = all.indptr;
     RowLocalMaps maps = keep_rows(std::move(all), rows, options.nearest);
     if (all_on_rows || options.radius > 0 || wanted.nearest >= rows.vertex_count()) return maps;
-    // Of the nearest some may have been virtual; then it takes more of them, where there are more.
+    // Some of the nearest vertices may be virtual. Then more are requested, as long as there are more.
     bool enough = true;
     for (std::size_t s = 0; s < sources.size() && enough; ++s)
       enough = maps.indptr[s + 1] - maps.indptr[s] == options.nearest || found[s + 1] - found[s] < wanted.nearest;

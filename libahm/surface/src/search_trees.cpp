@@ -13,7 +13,7 @@
 namespace ahm {
 namespace {
 
-constexpr std::size_t leaf = 8;  ///< rows or triangles
+constexpr std::size_t leaf = 8;  ///< maximum number of rows or triangles in a leaf
 
 }  // namespace
 
@@ -72,11 +72,12 @@ void RowTree::search(std::size_t begin, std::size_t end, const Vec3& position, B
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-/// What is nearer to an edge or a corner than this share of a side lies there, and of faces whose distances differ by less than this
-/// share of their coordinates the first is the nearest: a curve that crosses an edge is the same one however it is scaled and turned.
+/// Relative tolerance. A point within this fraction of a side from an edge or a corner lies on it. Of faces whose distances
+/// differ by less than this fraction of their coordinates, the first is the nearest. So a curve that crosses an edge is the
+/// same one at any scale and rotation.
 constexpr double rounding = 1e-12;
 
-/// Where on the segment from a to b the point nearest to p lies, in [0, 1].
+/// Parameter in [0, 1] of the point of the segment from a to b that is nearest to p.
 double along(const Vec3& p, const Vec3& a, const Vec3& b) {
   const Vec3 d = b - a;
   const double squared = dot(d, d);
@@ -91,7 +92,7 @@ Vec3 combined(const std::array<Vec3, 3>& t, const std::array<double, 3>& weights
   return result;
 }
 
-/// Barycentric coordinates of the point of a triangle nearest to p: its projection, or the nearest on an edge.
+/// Barycentric coordinates of the point of a triangle nearest to p: its projection, or the nearest point on an edge.
 std::array<double, 3> nearest_in(const std::array<Vec3, 3>& t, const Vec3& p) {
   const Vec3 u = t[1] - t[0], v = t[2] - t[0], w = p - t[0];
   const double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), area = uu * vv - uv * uv;
@@ -164,21 +165,21 @@ void FaceTree::build(std::size_t begin, std::size_t end) {
   build(half, end);
 }
 
-/// What a search knows; all lengths times `scale`.
+/// State of a search; all lengths times `scale`.
 struct FaceTree::Search {
   double scale;
   Vec3 from;
-  double size;  ///< of its coordinates
+  double size;  ///< largest coordinate of `from`
   double least = infinity;
 
   double to(const Box& box) const { return std::sqrt(squared_distance(from, scale * box.low, scale * box.high)); }
-  /// Whether what is in a box may be as near as the nearest so far but for the rounding of coordinates.
+  /// Whether a box may contain a point as near as the nearest so far, up to rounding of the coordinates.
   bool may_be_in(const Box& box) const {
     return to(box) <= least + rounding * std::max({size, scale * largest(box.low), scale * largest(box.high)});
   }
 };
 
-/// Looks at the triangles in a box that may be the nearest.
+/// Visits the triangles in a box that may be the nearest.
 template <class LookAt>
 void FaceTree::visit(std::size_t number, const Search& search, const LookAt& look_at) const {
   const Box& box = boxes_[number];
@@ -215,7 +216,7 @@ FaceTree::Hit FaceTree::nearest(const Vec3& position) const {
   return best;
 }
 
-/// The point of a triangle that is nearest; all lengths times `scale`.
+/// The point of a triangle that is nearest to `from`; all lengths times `scale`.
 FaceTree::Look FaceTree::look(const Piece& piece, const Vec3& from, double scale) const {
   std::array<Vec3, 3> t;
   Look here{};

@@ -1,5 +1,5 @@
 /// \file
-/// The row nearest to a position, for those who ask often.
+/// A search tree for the row nearest to a position.
 #pragma once
 
 #include <cstdint>
@@ -11,14 +11,14 @@
 
 namespace ahm {
 
-/// A k-d tree over the rows that have a vertex. It answers what looking at all of them answers, bit for bit: of rows at equal
-/// distances that of the lowest vertex; whence no library's, which compare squares. Immutable.
+/// A k-d tree over the rows that have a vertex. It returns bit for bit the result of a scan over all rows: of rows at equal
+/// distances that of the lowest vertex. Library trees compare squared distances, so their result may differ. Immutable.
 class RowTree {
  public:
-  /// O(n log n). @param positions  by row; those that are not finite are left out
+  /// O(n log n). Skips positions that are not finite. @param positions  position of each row
   RowTree(const RowMap& rows, std::span<const Vec3> positions, Index vertices);
 
-  /// @param position  finite. @return row 0 where the tree is empty
+  /// The nearest row; row 0 where the tree is empty. @param position  finite
   Row nearest(const Vec3& position) const;
 
  private:
@@ -37,7 +37,7 @@ class RowTree {
   void search(std::size_t begin, std::size_t end, const Vec3& position, Best& best) const;
 
   std::vector<Entry> entries_;
-  std::vector<std::uint8_t> axis_;  ///< along which the middle entry of a part halves the others
+  std::vector<std::uint8_t> axis_;  ///< axis along which the middle entry of a part splits the part
 };
 
 }  // namespace ahm

@@ -1,4 +1,4 @@
-// Maps on the rows, the corners and the points of a surface.
+// Maps by rows, corners and points of a surface.
 #include "ahm/surface/surface.hpp"
 
 #include <algorithm>
@@ -40,7 +40,7 @@ inline void check_finite(const TangentPoint& point) { check_finite(point.positio
 struct Surface::Lazy {
   std::once_flag once;
   std::optional<FaceTree> tree;
-  std::atomic<int> questions = 0;  ///< after the nearest row
+  std::atomic<int> questions = 0;  ///< number of searches for the nearest row so far
   std::once_flag rows_once;
   std::optional<RowTree> rows;
 };
@@ -70,8 +70,8 @@ Vertex Surface::vertex(Row row) const {
 Row Surface::nearest_row(const Vec3& position) const {
   check_finite(position);
   const std::span<const Vec3> points = positions();
-  if (points.empty()) throw InvalidArgument("the surface has no positions, so no row is nearest to one");
-  constexpr int few = 2;  // scans take less time than a tree
+  if (points.empty()) throw InvalidArgument("the surface has no positions, so the nearest row is undefined");
+  constexpr int few = 2;  // scans are faster than building a tree
   if (lazy_->questions >= few) {
     std::call_once(lazy_->rows_once, [&] { lazy_->rows.emplace(rows(), points, graph().size()); });
     return lazy_->rows->nearest(position);
@@ -99,10 +99,11 @@ ClosestPoint Surface::closest_point(const Vec3& position) const {
   }
   const Row row = nearest_row(position);
   const std::optional<Frame> frame = graph().frame(vertex(row).index);
-  if (!frame) throw InvalidArgument("the graph has no frames in space, so no point of its tangent planes is nearest");
+  if (!frame)
+    throw InvalidArgument("the graph has no frames in space, so the nearest point of its tangent planes is undefined");
   const Vec3 &point = positions()[row.index], away = position - point;
   const Vec3 along = away - dot(away, frame->normal) * frame->normal;
-  double reach = 0;  // of the plane: as far as the neighbours
+  double reach = 0;  // radius of the plane: distance of the farthest neighbor
   const Star star = graph().star(vertex(row).index);
   for (std::size_t e = 0; e < star.degree(); ++e) reach = std::max(reach, length(star.log(e)) * graph().length_unit());
   const double far = length(along);
@@ -115,7 +116,7 @@ Vec3 Surface::position(const SurfacePoint& point) const {
   if (points.empty()) throw InvalidArgument("the surface has no positions");
   const auto visit =
       Overloaded{[&](Row row) {
-                   rows().vertices(row);  // checks
+                   rows().vertices(row);  // checks the row
                    return points[row.index];
                  },
                  [&](const EdgePoint& edge) {
@@ -189,7 +190,7 @@ SurfaceSource Surface::source_near_row(const TangentPoint& point, const std::opt
 }
 
 SurfaceSource Surface::source_in_face(const FacePoint&, const std::optional<Vec3>&) const {
-  throw InvalidArgument("this surface takes no sources in faces");
+  throw InvalidArgument("this surface does not support sources in faces");
 }
 
 SurfaceSource Surface::source_on_edge(const EdgePoint& point, const std::optional<Vec3>& u_axis) const {
@@ -223,11 +224,11 @@ Method Surface::suggested_method() const { return choose_method(graph()); }
 
 FlatTriangles Surface::flat_triangles() const {
   throw InvalidArgument("no_flat_triangles", "exact geodesics need faces, which this surface does not have",
-                        "map it by heat");
+                        "use the heat method");
 }
 
 exact::MeshPoint Surface::flat_point_in_face(const FacePoint&) const {
-  throw InvalidArgument("no_flat_triangles", "this surface has no flat triangles", "map it by heat");
+  throw InvalidArgument("no_flat_triangles", "this surface has no flat triangles", "use the heat method");
 }
 
 exact::MeshPoint Surface::flat_point(const FacePoint& point) const {
@@ -256,8 +257,8 @@ void Surface::check(const FacePoint& point) const {
   const std::size_t m = all[point.face].size();
   const std::string where = "face " + std::to_string(point.face);
   if (point.barycentric.size() != m)
-    throw InvalidArgument(where + " has " + std::to_string(m) + " corners, but there are " +
-                          std::to_string(point.barycentric.size()) + " barycentric coordinates");
+    throw InvalidArgument(where + " needs " + std::to_string(m) + " barycentric coordinates, found " +
+                          std::to_string(point.barycentric.size()) + " instead");
   double sum = 0;
   for (double w : point.barycentric) {
     if (!(w >= -1e-9) || !std::isfinite(w))
@@ -279,7 +280,7 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// Of the vertices of a row the one with coordinates nearest to the source; nothing where there is none.
+/// The vertex of a row whose coordinates are nearest to the source; none where no vertex has coordinates.
 struct Best {
   std::optional<Vertex> vertex;
   Status status = Status::removed;
@@ -297,7 +298,7 @@ struct Best {
 
 RowLogMap Surface::to_rows(const LogMap& map, unsigned threads) const {
   check_map(map);
-  // Distances that are not exact may be below the straight line, which no way on the surface is.
+  // Distances that are not exact may be shorter than the straight line, which is a lower bound.
   const auto source = map.method() != Method::exact ? straight_line_origin(graph(), map.source()) : std::nullopt;
   const auto n = static_cast<std::size_t>(rows().row_count());
   const std::vector<double> none(n, nan);
@@ -311,7 +312,7 @@ RowLogMap Surface::to_rows(const LogMap& map, unsigned threads) const {
     result.status[r] = best.status;
     if (!best.vertex) return;
     const Vertex v = *best.vertex;
-    // A row that was joined with the source is there, too.
+    // A row that was merged with the source has distance 0.
     const bool is_away = source && map.distance(v) > 0;
     const double line = is_away ? distance(graph().frame(v.index)->origin, *source) : 0;
     const double away = bounded_distance(line, map.distance(v));
@@ -397,7 +398,7 @@ void Surface::check_map(const LogMap& map) const {
   if (map.size() != graph().size() || map.dimension() != 2)
     throw InvalidArgument("the map has " + std::to_string(map.size()) + " vertices in dimension " +
                           std::to_string(map.dimension()) + ", this surface's graph has " +
-                          std::to_string(graph().size()) + " in dimension 2: it belongs to another graph");
+                          std::to_string(graph().size()) + " in dimension 2: the map belongs to another graph");
 }
 
 std::vector<double> to_rows(const RowLogMap& rows, std::span<const double> values) {
@@ -406,7 +407,7 @@ std::vector<double> to_rows(const RowLogMap& rows, std::span<const double> value
   for (const std::optional<Vertex>& vertex : rows.vertex) {
     if (vertex && static_cast<std::size_t>(vertex->index) >= values.size())
       throw InvalidArgument("to_rows: there are " + std::to_string(values.size()) +
-                            " values, but the map has a vertex " + std::to_string(vertex->index));
+                            " values, but the map uses vertex " + std::to_string(vertex->index));
     result.push_back(vertex ? values[vertex->index] : nan);
   }
   return result;

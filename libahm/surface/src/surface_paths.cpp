@@ -10,7 +10,7 @@ namespace ahm {
 namespace {
 
 Vec3 in_space(const std::optional<Vec3>& position) {
-  if (!position) throw InvalidArgument("lines in space take a graph with frames");
+  if (!position) throw InvalidArgument("lines in space require a graph with frames");
   return *position;
 }
 
@@ -34,7 +34,7 @@ SurfacePath shortest_line(const Surface& surface, const SurfacePoint& from, cons
   SurfacePath line =
       in_space(surface.graph(), shortest_line(surface.graph(), place_of(surface, from), place_of(surface, to)));
   if (line.points.empty()) return line;
-  // The planes that the line ends in need not be theirs.
+  // The line may end in the tangent plane of another vertex: use the positions of the two points.
   line.points.front() = surface.position(from);
   line.points.back() = surface.position(to);
   line.length = std::max(line.length, distance(line.points.front(), line.points.back()));

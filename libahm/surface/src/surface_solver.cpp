@@ -16,13 +16,6 @@
 namespace ahm {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-template <class... Function>
-struct Overloaded : Function... {
-  using Function::operator()...;
-};
-
 /// The options of a method in place of automatic ones.
 MethodOptions chosen(const Surface& surface, const MethodOptions& options) {
   const auto* automatic = std::get_if<AutomaticOptions>(&options);
@@ -35,7 +28,7 @@ MethodOptions chosen(const Surface& surface, const MethodOptions& options) {
 /// Distances by row: the least of the vertices of each row.
 template <class Distance>
 std::vector<double> by_row(const RowMap& rows, const Distance& distance) {
-  std::vector<double> result(static_cast<std::size_t>(rows.row_count()), nan);
+  std::vector<double> result(static_cast<std::size_t>(rows.row_count()), NAN);
   for (Index r = 0; r < rows.row_count(); ++r)
     if (const auto vertex = rows.least(Row(r), distance)) result[static_cast<std::size_t>(r)] = distance(*vertex);
   return result;
@@ -59,24 +52,21 @@ SurfacePoint Location::on(const Surface& surface) const {
 
 struct SurfaceSolver::Impl {
   Impl(std::shared_ptr<const Surface> shared, const MethodOptions& options) : surface(std::move(shared)) {
-    std::visit(Overloaded{[](const AutomaticOptions&) {},
-                          [&](const PolarSolverOptions& o) {
-                            method = Method::polar;
-                            threads = o.threads;
-                            polar.emplace(*surface, o);
-                          },
-                          [&](const HeatOptions& o) {
-                            method = Method::heat;
-                            threads = o.threads;
-                            heat.emplace(surface->graph(), o);
-                          },
-                          [&](const ExactSolverOptions& o) {
-                            method = Method::exact;
-                            threads = o.threads;
-                            tolerance = o.tolerance;
-                            geodesics();
-                          }},
-               chosen(*surface, options));
+    const MethodOptions wanted = chosen(*surface, options);
+    if (const auto* o = std::get_if<HeatOptions>(&wanted)) {
+      method = Method::heat;
+      threads = o->threads;
+      heat.emplace(surface->graph(), *o);
+    } else if (const auto* o = std::get_if<ExactSolverOptions>(&wanted)) {
+      method = Method::exact;
+      threads = o->threads;
+      tolerance = o->tolerance;
+      geodesics();
+    } else {
+      const auto& polar_options = std::get<PolarSolverOptions>(wanted);
+      threads = polar_options.threads;
+      polar.emplace(*surface, polar_options);
+    }
   }
 
   /// The flat faces, laid out when they are first needed.
@@ -193,7 +183,7 @@ std::vector<double> SurfaceSolver::distance(const std::vector<Location>& sources
   front.run(options.radius, options.progress.stop);
   return by_row(surface().rows(), [&](Vertex v) {
     const double found = front.distance(v);
-    return std::isfinite(found) && found <= options.radius ? found : nan;
+    return std::isfinite(found) && found <= options.radius ? found : NAN;
   });
 }
 

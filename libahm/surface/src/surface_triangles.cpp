@@ -26,13 +26,13 @@ void check(const char* function, const TangentGraph& graph, const LogMap& map) {
     throw InvalidArgument("map_without_frames", name + "the map has no frames", "solve with MapOptions::frames = true");
 }
 
-/// Whether the source's axes arrive at the vertex as a reflection of its frame.
+/// Whether transport from the source to the vertex includes a reflection.
 bool is_mirrored(const LogMap& map, Index vertex) {
   const auto U = map.frames().subspan(4 * to_size(vertex), 4);
   return U[0] * U[3] - U[1] * U[2] < 0;
 }
 
-/// Sorted neighbours with coordinates, each once.
+/// Sorted neighbors with coordinates, each once.
 struct Neighbors {
   std::vector<Offset> begin{0};
   std::vector<Index> all;
@@ -66,7 +66,7 @@ struct Spoke {
   std::array<double, 2> log;
 };
 
-/// The star's edges to vertices with coordinates by angle; of parallel edges one counts.
+/// Sorts the edges of a star to vertices with coordinates by angle. Of parallel edges only the first is kept.
 void sort_spokes(const Star& star, const LogMap& map, std::vector<Spoke>& spokes) {
   spokes.clear();
   for (std::size_t e = 0; e < star.degree(); ++e) {
@@ -83,8 +83,8 @@ void sort_spokes(const Star& star, const LogMap& map, std::vector<Spoke>& spokes
   std::sort(spokes.begin(), spokes.end(), [](const Spoke& a, const Spoke& b) { return a.angle < b.angle; });
 }
 
-/// Whether i, j, m, k are a quadrilateral for some m, counter-clockwise in frame i: m is a neighbour of j and k and lies
-/// on the other side of them than i would if the corner at i were a border.
+/// Whether i, j, m, k form a quadrilateral for some m, counterclockwise in frame i. m must be a neighbor of both j and k, with
+/// an interior angle at j below 180 degrees.
 bool close_a_quadrilateral(const TangentGraph& graph, const LogMap& map, const Neighbors& neighbors, Index i, Index j,
                            Index k) {
   const Star star = graph.star(j);
@@ -136,7 +136,7 @@ std::vector<Vec3> source_side_normals(const TangentGraph& graph, const LogMap& m
     const auto frame = graph.frame(i);
     if (!frame)
       throw InvalidArgument("source_side_normals: vertex " + std::to_string(i) +
-                            " has no frame in space; use a graph whose backend knows frames");
+                            " has no frame in space; use a backend that provides frames");
     normals[i] = frame->normal;
     if (is_mirrored(map, i))
       for (double& x : normals[i]) x = -x;
@@ -146,7 +146,7 @@ std::vector<Vec3> source_side_normals(const TangentGraph& graph, const LogMap& m
 
 namespace {
 
-/// The first source of every component.
+/// A source of the first vertex in each component.
 Source source_of_each_component(const TangentGraph& graph, std::span<const Vertex> sources) {
   const Components components = connected_components(graph);
   std::vector<bool> has_source(components.count, false);
@@ -172,7 +172,7 @@ SurfaceFaces found_triangles(const TangentGraph& graph, const LogMap& map) {
   return result;
 }
 
-/// Positive where the vector area of a face points to the side of the normals of its corners.
+/// Positive where the vector area of a face points to the same side as the normals of its corners.
 double side(std::span<const Vec3> points, std::span<const Index> face, std::span<const Vec3> normals) {
   Vec3 area{}, normal{};
   const auto corner = [&](std::size_t c) { return points[face[c % face.size()]] - points[face[0]]; };
@@ -228,7 +228,7 @@ std::vector<Triangle> turned_triangles(const Surface& surface, std::span<const V
 
 namespace {
 
-/// Fewer vertices for each that is in no triangle, and the triangles are no picture of the cloud.
+/// With fewer vertices than this per vertex without a triangle, the triangles do not represent the cloud.
 constexpr Index least_per_unused = 50;
 
 }  // namespace
@@ -275,9 +275,9 @@ std::vector<Triangle> mapped_triangles(const Surface& surface) try {
 namespace ahm::detail {
 namespace {
 
-/// How much more than its sheet a torn face is stretched, and one beside it is stretched or shrunk: log 2, log 1.4.
+/// Strain above that of the sheet: in torn faces (log 2), and in stretched or shrunk faces next to them (log 1.4).
 constexpr double torn = 0.693147, blended = 0.336472;
-/// How much the sheet's strain changes from face to face at the most, and how many faces wide a map blends two sheets.
+/// Maximum change of the sheet's strain from face to face, and the number of faces over which a map blends two sheets.
 constexpr double drift = 0.05;
 constexpr int blend = 3;
 
@@ -329,7 +329,7 @@ class Unfolding {
       }
   }
 
-  /// Calls visit(length, mapped length) for the sides and the diagonals over one corner.
+  /// Calls visit(length, mapped length) for the sides and for the diagonals (c, c + 2).
   template <class Visit>
   void for_each_pair(Index f, const Visit& visit) const {
     for (Half h = begin(f); h < begin(f + 1); ++h) {
@@ -339,7 +339,7 @@ class Unfolding {
     }
   }
 
-  /// The largest of log(mapped length / length), and of its absolute value.
+  /// The largest log(mapped length / length), its largest absolute value, and the largest length.
   struct Strain {
     double stretch = 0, either = 0, longest = 0;
   };
@@ -357,7 +357,7 @@ class Unfolding {
     return result;
   }
 
-  /// Twice that of a face in the map; negative where it is turned over.
+  /// Twice the area of a face in the map; negative where the map reverses the face.
   double area(Index f) const {
     const Half first = begin(f);
     double sum = 0;
@@ -365,7 +365,7 @@ class Unfolding {
     return sum;
   }
 
-  /// Whether a face lies on the sheet, which goes on with its strain.
+  /// Whether a face lies on the sheet. If so, the sheet's strain follows that of the face.
   bool is_on_sheet(Index f) {
     const Strain own = strain(f);
     if (!(own.stretch <= sheet_[f] + torn)) return false;
@@ -381,8 +381,8 @@ class Unfolding {
       if (is_source[faces_.vertices[h]]) at_source_[face_of(h)] = true;
   }
 
-  /// All faces, outward from those at the source, and from any other where none leads there. At the source a map is the sheet,
-  /// however coarse, unless it turns a face over.
+  /// Classifies all faces, outward from the source. Faces that are not reached from there start from any face. At the source
+  /// the map is on the sheet, however coarse, unless it reverses a face.
   void judge() {
     std::vector<Index> front;
     const auto visit = [&](Index f, double before) {
@@ -402,7 +402,7 @@ class Unfolding {
     }
   }
 
-  /// Torn are also the faces beside torn ones over which a map by heat blends the two sheets.
+  /// Marks faces next to torn ones as torn where a heat map blends the two sheets.
   void widen() {
     std::vector<Index> front, next;
     for (Index f = 0; f < face_count(); ++f)
@@ -430,14 +430,15 @@ class Unfolding {
         }
   }
 
-  /// Lays the face of t out beside that of h, as it is; but corners that its other neighbours have near by, where they have them.
+  /// Lays out the face of t next to the face of h without distortion. A corner takes its position in another neighbor where
+  /// that is near.
   bool lay_beside(Half h, Half t) {
     const bool same_way = edges_.is_mirrored(h);
     const Half after = edges_.next(t);
     const Vec2 a = phi_[same_way ? h : edges_.next(h)], b = phi_[same_way ? edges_.next(h) : h];
     const Vec2 p = faces_.places[t], q = faces_.places[after];
     if (!(norm(b - a) > 0) || !(norm(q - p) > 0)) return false;
-    // The face of h lies to the left of its sides, unless it was laid out turned over itself.
+    // The face of h lies to the left of its sides, unless its layout is reversed.
     const bool turned = (area(face_of(h)) > 0) == same_way;
     const Vec2 along = normalized(b - a), side = normalized(q - p), back = {side[0], -side[1]};
     const Half first = begin(face_of(t)), last = begin(face_of(t) + 1);

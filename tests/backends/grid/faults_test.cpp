@@ -17,8 +17,8 @@ TEST(GridFaults, NameTheAxis) {
   expect_error<InvalidGeometry>([] { GridGraph({.shape = {2, 2, 2, 2}, .spacing = {1, 1, 1, 1}}); }, "4 axes");
   expect_error<InvalidGeometry>([] { GridGraph({.shape = {2, 2}, .spacing = {1}}); }, "'spacing'");
   expect_error<InvalidGeometry>([] { GridGraph({.shape = {2, 2}, .spacing = {1, 1}, .origin = {0}}); }, "'origin'");
-  expect_error<InvalidGeometry>([] { GridGraph({.shape = {5, 1}, .spacing = {1, 1}}); }, "axis 1: 1 vertices");
-  expect_error<InvalidGeometry>([] { GridGraph({.shape = {5, -3}, .spacing = {1, 1}}); }, "axis 1: -3 vertices");
+  expect_error<InvalidGeometry>([] { GridGraph({.shape = {5, 1}, .spacing = {1, 1}}); }, "axis 1: 1 is too few");
+  expect_error<InvalidGeometry>([] { GridGraph({.shape = {5, -3}, .spacing = {1, 1}}); }, "axis 1: -3 is too few");
   for (double spacing : {0.0, -1.0, static_cast<double>(NAN), static_cast<double>(INFINITY), 1e308})
     expect_error<InvalidGeometry>([&] { GridGraph({.shape = {5, 5}, .spacing = {1, spacing}}); }, "axis 1: spacing");
   expect_error<InvalidGeometry>([] { GridGraph({.shape = {5, 5}, .spacing = {1, 1}, .origin = {NAN, 0}}); }, "axis 0");

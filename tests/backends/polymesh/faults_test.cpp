@@ -50,7 +50,7 @@ TEST(PolygonFaults, DuplicateFaces) {
   auto face = mesh.face(3);
   std::rotate(face.begin(), face.begin() + 2, face.end());
   mesh.add(face);
-  expect_error<InvalidGeometry>(mesh, "1 faces are duplicates: face 24 repeats face 3");
+  expect_error<InvalidGeometry>(mesh, "1 faces have a duplicate: face 24 repeats face 3");
   mesh.reverse(24);
   expect_error<InvalidGeometry>(mesh, "face 24 repeats face 3");
 }

@@ -49,7 +49,7 @@ TEST(MeshFaults, DuplicateFaces) {
   mesh.faces.push_back(mesh.faces[3]);
   expect_error<InvalidGeometry>(mesh, "face 80 repeats face 3");
   mesh.faces.back() = {mesh.faces[3][1], mesh.faces[3][0], mesh.faces[3][2]};
-  expect_error<InvalidGeometry>(mesh, "1 faces are duplicates");
+  expect_error<InvalidGeometry>(mesh, "1 faces have a duplicate");
   Mesh pillow{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {2, 1, 0}}, {}};
   expect_error<InvalidGeometry>(pillow, "face 1 repeats face 0");
 }
@@ -127,7 +127,7 @@ TEST(MeshFaults, BowTies) {
 TEST(MeshFaults, TheFirstTenAreListed) {
   Mesh mesh = icosphere(3);
   for (Index f = 0; f < 12; ++f) mesh.faces.push_back(mesh.faces[f]);
-  expect_error<InvalidGeometry>(mesh, "12 faces are duplicates");
+  expect_error<InvalidGeometry>(mesh, "12 faces have a duplicate");
   expect_error<InvalidGeometry>(mesh, "and 2 more");
 }
 

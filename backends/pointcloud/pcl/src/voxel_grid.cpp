@@ -21,8 +21,8 @@ std::string text(double x) {
   return out.str();
 }
 
-/// Rejects sizes that PCL does not support. PCL numbers voxels with 32-bit integers and returns the cloud unchanged on overflow. It
-/// also rounds voxel coordinates to single precision, which fails for more than 2^23 voxels in a row.
+/// Rejects sizes that PCL does not support. PCL numbers voxels with 32-bit integers and returns the cloud unchanged on
+/// overflow. It also rounds voxel coordinates to single precision, which fails for more than 2^23 voxels in a row.
 void require_representable(const FloatCloud& input, double size) {
   double voxels = 1;
   double longest = 0;
@@ -110,8 +110,8 @@ ReducedCloud voxel_grid(std::span<const Vec3> points, std::span<const Vec3> norm
   const FloatCloud input = to_float_cloud(points, "voxel_grid");
   if (points.empty()) return {};
   require_representable(input, size);
-  // Limits the size to the range of single precision, for voxels much larger than the cloud and for clouds of one point. 8 units hold
-  // any cloud; sizes below 1e-7 were rejected above unless the extent is zero.
+  // Limits the size to the range of single precision, for voxels much larger than the cloud and for clouds of one point. 8
+  // units hold any cloud; sizes below 1e-7 were rejected above unless the extent is zero.
   const auto leaf = static_cast<float>(std::clamp(size / input.unit, 1e-7, 8.0));
   Grid grid;
   grid.setInputCloud(input.cloud);

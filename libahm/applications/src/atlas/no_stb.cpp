@@ -1,4 +1,4 @@
-// Stands in for pack.cpp in a build without stb.
+// Replaces pack.cpp in a build without stb.
 #include "ahm/applications/atlas.hpp"
 #include "ahm/error.hpp"
 
@@ -7,7 +7,7 @@ namespace ahm {
 bool can_pack() noexcept { return false; }
 
 TextureAtlas pack(const Atlas&, const FaceList&, const PackOptions&) {
-  throw Error("this build has no stb, which packs charts (Debian: libstb-dev)");
+  throw Error("this build cannot pack charts: it was built without stb (Debian: libstb-dev)");
 }
 
 }  // namespace ahm

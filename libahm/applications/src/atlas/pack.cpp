@@ -1,4 +1,4 @@
-// The only place that includes stb_rect_pack.
+// The only file that includes stb_rect_pack.
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -24,12 +24,12 @@ namespace {
 
 double side(const ChartBox& box, std::size_t axis) { return box.high[axis] - box.low[axis]; }
 
-/// The same chart, a quarter turned: x' = y, y' = -x.
+/// The box of the same chart after a quarter turn: x' = y, y' = -x.
 ChartBox quarter_turned(const ChartBox& box) {
   return {{-box.turn[1], box.turn[0]}, {box.low[1], -box.high[0]}, {box.high[1], -box.low[0]}};
 }
 
-/// The boxes at this scale in the square, in their order; nothing where they do not fit.
+/// Positions of the boxes in the square at this scale, in the same order; empty if they do not fit.
 std::optional<std::vector<TextureBox>> place(const std::vector<ChartBox>& boxes, double scale, int size, int margin) {
   std::vector<stbrp_rect> rectangles;
   for (std::size_t k = 0; k < boxes.size(); ++k) {
@@ -40,7 +40,7 @@ std::optional<std::vector<TextureBox>> place(const std::vector<ChartBox>& boxes,
     }
     rectangles.push_back({static_cast<int>(k), static_cast<int>(texels[0]), static_cast<int>(texels[1]), 0, 0, 0});
   }
-  // Each rectangle has its margin on the right and above; the square gives the others.
+  // Each rectangle includes its margin on the right and above; the offset of the square adds the others.
   const int room = size - margin;
   std::vector<stbrp_node> nodes(static_cast<std::size_t>(room));
   stbrp_context context;
@@ -52,7 +52,7 @@ std::optional<std::vector<TextureBox>> place(const std::vector<ChartBox>& boxes,
   return result;
 }
 
-/// The largest scale at which all fit, to a hundredth.
+/// The largest scale at which all boxes fit, to 1 %.
 double largest_scale(const std::vector<ChartBox>& boxes, const PackOptions& options) {
   double size = 0, area = 0;
   for (const ChartBox& box : boxes) size = std::max({size, side(box, 0), side(box, 1)});
@@ -80,7 +80,7 @@ bool can_pack() noexcept { return true; }
 TextureAtlas pack(const Atlas& atlas, const FaceList& faces, const PackOptions& options) {
   if (options.size < 16 || options.size > 32768)
     throw InvalidArgument("size is " + std::to_string(options.size) + "; it must be 16 to 32768");
-  if (options.margin < 0) throw InvalidArgument("margin is " + std::to_string(options.margin) + "; give >= 0");
+  if (options.margin < 0) throw InvalidArgument("margin is " + std::to_string(options.margin) + "; it must be >= 0");
   std::vector<ChartBox> boxes = chart_boxes(atlas, faces);
   TextureAtlas result;
   result.size = options.size;

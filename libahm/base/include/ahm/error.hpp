@@ -1,6 +1,5 @@
 /// \file
-/// The exceptions libahm throws. Every message names the argument, the element and its index, the value, and what to
-/// do.
+/// The exceptions that libahm throws. Every message names the argument or the element and its index, the value, and what to do.
 ///
 /// \code
 /// try {
@@ -22,14 +21,14 @@ namespace ahm {
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
-  /// What went wrong, and what to do about it in terms of this library: what() is "problem; remedy".
-  /// @param fault  snake_case, static storage: for programs that name another remedy, their own
+  /// what() returns "problem; remedy". The remedy names functions and options of this library.
+  /// @param fault  identifies the error, snake_case, static storage. A program uses it to replace the remedy by its own
   Error(std::string_view fault, const std::string& problem, const std::string& remedy)
       : runtime_error(problem + "; " + remedy), fault_(fault), problem_(problem.size()) {}
 
-  /// Empty where the error has no name of its own.
+  /// Identifier of the error; empty for errors without one.
   std::string_view fault() const noexcept { return fault_; }
-  /// what() without the remedy of a named fault.
+  /// what() without the remedy. Errors without a fault return all of what().
   std::string_view problem() const noexcept { return fault_.empty() ? what() : std::string_view(what(), problem_); }
 
  private:
@@ -37,31 +36,31 @@ class Error : public std::runtime_error {
   std::size_t problem_ = 0;
 };
 
-/// A graph breaks one of its laws (see `validate`).
+/// A graph violates one of the requirements that `validate` checks.
 class InvalidGraph : public Error {
  public:
   using Error::Error;
 };
 
-/// Geometry (mesh, cloud, grid) that no graph can be built from.
+/// No graph can be built from the geometry (mesh, point cloud, grid).
 class InvalidGeometry : public Error {
  public:
   using Error::Error;
 };
 
-/// An argument outside its documented range.
+/// An argument is outside its documented range.
 class InvalidArgument : public Error {
  public:
   using Error::Error;
 };
 
-/// An operator is not positive definite, or its factorization failed its own check.
+/// An operator is not positive definite, or its factorization is too inaccurate.
 class NotPositiveDefinite : public Error {
  public:
   using Error::Error;
 };
 
-/// Memory or an index range does not suffice for the request.
+/// There is not enough memory, or an index type is too small.
 class ResourceExhausted : public Error {
  public:
   using Error::Error;
@@ -73,7 +72,7 @@ class IoError : public Error {
   using Error::Error;
 };
 
-/// The caller's stop token asked to stop.
+/// The caller canceled through its stop token.
 class Cancelled : public Error {
  public:
   using Error::Error;

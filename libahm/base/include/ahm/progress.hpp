@@ -16,16 +16,15 @@
 
 namespace ahm {
 
-/// How a long call reports and is stopped. Default: silent, never stopped.
+/// Callbacks of a long call: progress reports and cancellation. Default: no reports, no cancellation.
 struct Progress {
-  /// Called with the stage's name and the fraction of it that is done, in [0, 1]. May be called from any thread, one at
-  /// a time.
+  /// Receives the name of the stage and its completed fraction in [0, 1]. Called from any thread, one call at a time.
   std::function<void(std::string_view stage, double fraction)> report;
   /// Checked between stages and between the blocks of a stage. A sparse factorization is one block: it takes about a second
   /// for 200,000 vertices and cannot be interrupted.
   std::stop_token stop;
 
-  /// Reports, then throws `Cancelled` when a stop was requested.
+  /// Reports progress, then throws `Cancelled` if a stop was requested.
   void step(std::string_view stage, double fraction) const {
     if (report) report(stage, fraction);
     if (stop.stop_requested()) throw Cancelled("cancelled during " + std::string(stage));

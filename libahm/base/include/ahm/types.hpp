@@ -1,5 +1,5 @@
 /// \file
-/// The few types every part of libahm shares.
+/// Types used by all parts of libahm.
 ///
 /// \code
 /// ahm::Source here = ahm::Source::at_vertex(ahm::Vertex{42});            // vertex 42 of a graph
@@ -15,15 +15,15 @@
 
 namespace ahm {
 
-/// Number of a vertex, point or face. 0-based.
+/// Number of a vertex, point or face, from 0.
 using Index = std::int32_t;
 
 /// Position in an array that may outgrow `Index` (edges, matrix entries).
 using Offset = std::int64_t;
 
-/// A vertex of a graph. Not a row of the input: a cloud's vertices are sorted along a space-filling curve, equal points
-/// share one, and points without a neighbourhood have none. `Surface::vertex` turns a row into its vertex; neither turns
-/// into the other, or comes from a plain number, unasked.
+/// A vertex of a graph. Vertex numbers differ from row numbers: vertices of a point cloud are sorted along a space-filling curve,
+/// equal points share a vertex, and points without a neighborhood have none. `Surface::vertex` returns the vertex of a row.
+/// `Vertex` and `Row` do not convert into each other, and numbers do not convert into either implicitly.
 struct Vertex {
   Index index = 0;
 
@@ -32,7 +32,7 @@ struct Vertex {
   friend constexpr auto operator<=>(Vertex, Vertex) = default;
 };
 
-/// A row of the input: a point of a cloud or a vertex of a mesh, as the user numbers them.
+/// A row of the input: a point of a cloud or a vertex of a mesh, in the order of the input.
 struct Row {
   Index index = 0;
 
@@ -50,10 +50,10 @@ using Vec3 = std::array<double, 3>;
 /// Vertex or row numbers of the three corners of a face.
 using Triangle = std::array<Index, 3>;
 
-/// Polygons in compressed rows: face f has the corners begin[f] .. begin[f + 1]. Views only.
+/// A view of polygons in compressed rows: the corners of face f are vertices[begin[f]] to vertices[begin[f + 1] - 1].
 struct FaceList {
-  std::span<const Offset> begin;    ///< faces + 1, from 0, rising; or empty: no faces
-  std::span<const Index> vertices;  ///< one per corner
+  std::span<const Offset> begin;    ///< faces + 1 entries, ascending from 0; empty if there are no faces
+  std::span<const Index> vertices;  ///< one vertex or row number per corner
 
   std::size_t size() const { return begin.empty() ? 0 : begin.size() - 1; }
   std::span<const Index> operator[](std::size_t f) const {

@@ -15,7 +15,7 @@
 namespace ahm {
 namespace {
 
-// The BLAS is chosen when the process starts, so its extra functions are looked up by name rather than linked.
+// The BLAS is selected when the process starts, so functions that only some BLAS libraries have are found by name.
 template <class Function>
 Function* find_function(const char* name) {
   return reinterpret_cast<Function*>(dlsym(RTLD_DEFAULT, name));
@@ -44,24 +44,25 @@ OneBlasThread::~OneBlasThread() {
 
 namespace {
 
-/// OpenBLAS has room for 50 at least and complains on standard error when it is exceeded; twice this number may be held.
+/// OpenBLAS has slots for at least 50 buffers, and prints to standard error when they are exceeded. Up to twice this number can be
+/// in use.
 constexpr int most_buffers = 16;
 constexpr std::size_t buffer_bytes = std::size_t{128} << 20;
-constexpr std::size_t room_for_others = std::size_t{32} << 20;  ///< who allocate between our trial and OpenBLAS's
+constexpr std::size_t room_for_others = std::size_t{32} << 20;  ///< allocations between our test and OpenBLAS's own
 
 std::condition_variable buffer_is_free;
-int buffers = 0;        // that OpenBLAS keeps for us
-int buffers_taken = 0;  // by callers
+int buffers = 0;        // buffers that OpenBLAS keeps
+int buffers_taken = 0;  // buffers reserved by callers
 
 bool there_is_room_for(std::size_t bytes) {
   void* const trial = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   return trial != MAP_FAILED && ::munmap(trial, bytes) == 0;
 }
 
-/// Makes OpenBLAS keep one buffer more, if there is room. Callers at work may hold buffers or not, so as many as there are
-/// are held at once here, and there must be room for all callers to be at work.
+/// Makes OpenBLAS keep one more buffer, if there is address space for it. Callers may or may not hold their buffers at this moment.
+/// So this function takes all existing buffers plus one, and requires address space for the buffers of all callers plus one.
 bool add_buffer(void* (*take)(int), void (*give_back)(void*)) {
-  std::vector<void*> held;  // takes room itself
+  std::vector<void*> held;  // allocated before the test below
   held.reserve(static_cast<std::size_t>(buffers) + 1);
   if (!there_is_room_for((static_cast<std::size_t>(buffers_taken) + 1) * buffer_bytes + room_for_others)) return false;
   while (held.size() <= static_cast<std::size_t>(buffers)) held.push_back(take(0));

@@ -1,6 +1,6 @@
 /// \file
-/// The BLAS of the process: the functions called, its name, and its threads. Functions may be called only while a `OneBlasThread`
-/// and a `BlasBuffer` exist.
+/// The BLAS of the process: its functions, name and threads. BLAS functions may be called only while a `OneBlasThread` and a
+/// `BlasBuffer` exist.
 #pragma once
 
 #include <string>
@@ -26,9 +26,8 @@ void zgemm_(const char*, const char*, const int*, const int*, const int*, const 
 
 namespace ahm {
 
-/// While any object of this class lives, OpenBLAS runs on one thread: our parallelism is coarser, and results must not
-/// depend on the number of threads. The process-wide setting is restored when the last one dies. Other BLAS libraries
-/// are left alone.
+/// While any object of this class exists, OpenBLAS runs on one thread: libahm runs BLAS calls in parallel itself, and results must
+/// not depend on the number of threads. The last destructor restores the process-wide setting. Has no effect on other BLAS libraries.
 class OneBlasThread {
  public:
   OneBlasThread();
@@ -37,13 +36,13 @@ class OneBlasThread {
   OneBlasThread& operator=(const OneBlasThread&) = delete;
 };
 
-/// While an object of this class lives, its thread may call the BLAS; not to be nested. OpenBLAS takes a working buffer of
-/// 128 MB of address space for each call at a time, keeps it for later calls, and where it cannot have one tries for ever.
-/// So where address space is limited, buffers are had before calls are made, and callers wait for each other where there
-/// are fewer than callers. Without a limit, and with other BLAS libraries, this does nothing.
+/// While an object of this class exists, its thread may call the BLAS. Objects must not be nested.
+/// Each running OpenBLAS call needs a working buffer of 128 MB of address space. OpenBLAS keeps the buffers for later calls. If it
+/// cannot allocate one, it retries forever. So if address space is limited, the constructor reserves a buffer before the call, and
+/// waits for other callers if there are too few. Without a limit, or with other BLAS libraries, it does nothing.
 class BlasBuffer {
  public:
-  /// @throws ResourceExhausted where there is no room for a single buffer
+  /// @throws ResourceExhausted (no address space for a single buffer)
   BlasBuffer();
   ~BlasBuffer();
   BlasBuffer(const BlasBuffer&) = delete;
@@ -53,10 +52,10 @@ class BlasBuffer {
   bool counted_;
 };
 
-/// Configuration string of OpenBLAS, else the file that provides `dgemm`.
+/// Configuration string of OpenBLAS, or the path of the library that provides `dgemm`.
 std::string blas_name();
 
-/// Whether the name is that of an optimized BLAS.
+/// Whether `name` (see `blas_name`) names an optimized BLAS.
 bool blas_is_optimized(const std::string& name);
 
 }  // namespace ahm

@@ -19,7 +19,7 @@
 namespace ahm {
 namespace {
 
-/// y += K x for the full matrix whose upper triangle is given, real (W = 1) or complex (W = 2).
+/// y += K x. K is the full matrix, of which only the upper triangle is stored; real (W = 1) or complex (W = 2).
 template <int W>
 void add_product(const SparseUpper& K, const double* x, double* y) {
   const auto add = [](const double* a, double sign, const double* from, double* to) {
@@ -39,7 +39,7 @@ void add_product(const SparseUpper& K, const double* x, double* y) {
     }
 }
 
-/// K x
+/// Computes K x.
 std::vector<double> multiply(const SparseUpper& K, const std::vector<double>& x) {
   std::vector<double> y(x.size(), 0.0);
   (K.is_complex ? add_product<2> : add_product<1>)(K, x.data(), y.data());
@@ -88,15 +88,14 @@ CholeskyFactor::CholeskyFactor(const SparseUpper& matrix, const SymbolicCholesky
   check_pivots(good, name);
 }
 
-/// @param good  columns that could be eliminated
+/// @param good  number of columns eliminated before the first bad pivot
 void CholeskyFactor::check_pivots(Offset good, const char* name) const {
   const auto rows = static_cast<Offset>(pattern_->permutation.size());
   if (good == rows) return;
   throw NotPositiveDefinite("not_positive_definite",
                             std::string("operator ") + name + " is not positive definite (column " +
                                 std::to_string(good) + " of " + std::to_string(rows) + " in elimination order)",
-                            "check the graph's weights: negative ones can cause this, and points nearly on top of "
-                            "each other");
+                            "check the graph: negative weights and nearly coincident points can cause this");
 }
 
 void CholeskyFactor::check(const SparseUpper& matrix, const char* name, unsigned threads) const {

@@ -11,7 +11,7 @@
 namespace ahm {
 namespace {
 
-/// Squared, relative: the residual is driven to where rounding stops it.
+/// Bound of the squared residual norm, relative. It is below rounding errors of the residual.
 constexpr double tolerance = 1e-34;
 constexpr int most_iterations = 5000;
 
@@ -25,7 +25,7 @@ ConjugateGradient::ConjugateGradient(const SparseUpper& matrix, const char* name
   rows_.reserve(matrix.rows.size());
   values_.reserve(matrix.rows.size());
   for (std::size_t j = 0; j < n; ++j) {
-    const auto diagonal = static_cast<std::size_t>(matrix.column_begin[j + 1]) - 1;  // rows ascend: the last one
+    const auto diagonal = static_cast<std::size_t>(matrix.column_begin[j + 1]) - 1;  // last entry, since rows ascend
     const double D = matrix.values[diagonal];
     if (!(D > 0) || !std::isfinite(D))
       throw NotPositiveDefinite(std::string("operator ") + name + ": diagonal entry " + std::to_string(j) +
@@ -33,7 +33,7 @@ ConjugateGradient::ConjugateGradient(const SparseUpper& matrix, const char* name
     scale_[j] = 1 / std::sqrt(D);
     for (auto k = static_cast<std::size_t>(matrix.column_begin[j]); k < diagonal; ++k) {
       const double value = matrix.values[k] * scale_[matrix.rows[k]] * scale_[j];
-      if (value == 0) continue;  // blocks of diagonal transports
+      if (value == 0) continue;  // explicit zeros in the blocks of diagonal transports
       rows_.push_back(static_cast<Index>(matrix.rows[k]));
       values_.push_back(value);
     }
@@ -66,7 +66,7 @@ void ConjugateGradient::solve(std::span<double> x) const {
   double largest = 0;
   for (double value : x) largest = std::max(largest, std::abs(value));
   if (largest == 0) return;
-  const double unit = std::ldexp(1.0, std::ilogb(largest));  // so that no square overflows
+  const double unit = std::ldexp(1.0, std::ilogb(largest));  // prevents overflow of squares
   std::vector<double> r(n), p, t(n), q(n);
   for (std::size_t i = 0; i < n; ++i) r[i] = x[i] / unit * scale_[i];
   forward(r);

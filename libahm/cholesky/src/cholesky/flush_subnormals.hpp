@@ -1,5 +1,5 @@
 /// \file
-/// Numbers too small to matter, and too slow to keep.
+/// Disables subnormal numbers, which are slow on some processors.
 #pragma once
 
 #ifdef __SSE2__
@@ -8,10 +8,9 @@
 
 namespace ahm {
 
-/// While an object of this class lives, what its thread computes is zero where it is smaller than all normal numbers (2e-308), if the
-/// processor can (x86). Entries of a factor decay by the heat between their vertices, which are up to a thousand edges apart in the
-/// fronts of large graphs; products of such entries are nothing beside the others, and some processors take a hundred times as long
-/// for them.
+/// While an object of this class exists, its thread replaces subnormal numbers (below 2e-308) by zero, on x86.
+/// Entries of a factor decay like the heat between their vertices. In the fronts of large graphs these are up to a thousand edges
+/// apart. Products of such entries are negligible, but some processors take a hundred times as long to compute them.
 class FlushSubnormals {
  public:
 #ifdef __SSE2__
@@ -26,7 +25,7 @@ class FlushSubnormals {
 
  private:
 #ifdef __SSE2__
-  static constexpr unsigned results = 0x8000, operands = 0x40;  // of the register MXCSR
+  static constexpr unsigned results = 0x8000, operands = 0x40;  // bits FTZ and DAZ of the register MXCSR
   unsigned before_;
 #endif
 };

@@ -14,14 +14,14 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// The number in a file; infinity where there is no such file, or a word in it ("max").
+/// Reads a number from a file. Returns infinity if there is no such file, or if it contains a word ("max").
 double number_in(const std::filesystem::path& file) {
   double value = infinity;
   return std::ifstream(file) >> value ? value : infinity;
 }
 
-/// Over a group of a mounted hierarchy and all around it. A container may see its own group as the root, under whatever
-/// name.
+/// The smallest limit of a control group and its ancestors in a mounted hierarchy. In a container, the process's own group may be
+/// mounted as the root, under any name.
 double least_upwards(const std::filesystem::path& mount, const std::filesystem::path& group, const char* file) {
   double least = number_in(mount / file);
   std::filesystem::path here = mount;

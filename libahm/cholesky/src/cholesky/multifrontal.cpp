@@ -16,15 +16,15 @@
 namespace ahm {
 namespace {
 
-/// Numbers of a tile's columns: two vectors.
+/// Doubles per tile column: two vectors of four.
 constexpr Offset tall = 8;
 
-/// sum_k L_rk conj(L_ck) of R * 4 / W rows and J columns.
+/// Computes sum_k L_rk conj(L_ck) for a tile of R * 4 / W rows r and J columns c.
 template <int W, int R, int J>
 struct Tile {
-  Four straight[J][R] = {}, crossed[(J - 1) * (W - 1) + 1][(R - 1) * (W - 1) + 1] = {};  // none where W is 1
+  Four straight[J][R] = {}, crossed[(J - 1) * (W - 1) + 1][(R - 1) * (W - 1) + 1] = {};  // crossed: unused if W is 1
 
-  /// @param row, column  first rows of L in its first column
+  /// @param row, column  entries of the first column of L in the tile's first row r and first column c
   [[gnu::always_inline]] Tile(const double* row, const double* column, Offset stride, Offset count) {
     for (Offset k = 0; k < count; ++k, row += stride, column += stride) {
       const Four* left = four(row);
@@ -44,14 +44,15 @@ struct Tile {
   }
 };
 
-/// A column block of the front on its way: rows from `begin` on, of the columns that begin there.
+/// Applies the eliminated columns to J columns of the front, from the row of the first diagonal entry (`begin`) on.
 template <int W, int J, bool Own>
 struct ColumnBlock {
   const double* L;
-  Offset rows, eliminated;  ///< numbers of a column, columns
-  double* target[J];        ///< as if they began at row 0
+  Offset rows, eliminated;  ///< doubles per column; number of eliminated columns
+  double* target[J];        ///< output columns, shifted so that index 0 is row 0 of the front
 
-  /// Of own columns: what is eliminated is subtracted. Of those below: stored with a minus.
+  /// Own: subtracts the product from the supernode's own columns. Otherwise: stores the negative product in the update matrix.
+  /// @param skipped  leading doubles of the tile that are not written
   template <int R>
   [[gnu::always_inline]] void tile(Offset begin, Offset r, Offset skipped = 0) const {
     const Tile<W, R, J> tile(L + r, L + begin, rows, eliminated);
@@ -81,7 +82,7 @@ struct ColumnBlock {
   }
 
  private:
-  /// Where a column has less than four numbers.
+  /// Computes one entry, for fronts with less than four doubles per column.
   [[gnu::always_inline]] void one(Offset begin, Offset r, int c) const {
     double re = 0, im = 0;
     for (Offset k = 0; k < eliminated; ++k) {
@@ -98,7 +99,8 @@ struct ColumnBlock {
   }
 };
 
-/// J columns from j on, which all before have been eliminated from, among themselves. @return how many pivots are good
+/// Factors the columns j to j + J - 1 among themselves, after all earlier columns have been eliminated from them.
+/// @return number of columns before the first pivot that is not positive and finite
 template <int W, int J>
 [[gnu::always_inline]] inline int finish_columns(double* L, Offset rows, Offset j) {
   double* column[J];
@@ -144,11 +146,11 @@ template <int W, int J>
   block.all((columns + c) * W);
 }
 
-/// Columns at a time: as many as registers hold sums of.
+/// Columns per tile: as many as fit into the registers.
 template <int W>
 constexpr int at_once = W == 1 ? 4 : 2;
 
-/// @param rows  numbers of a column
+/// @param rows  doubles per column
 template <int W>
 [[gnu::always_inline]] inline Offset factor_small(double* L, Offset rows, Offset columns, double* update) {
   constexpr int J = at_once<W>;
@@ -177,7 +179,7 @@ Offset factor_small_anywhere(double* L, Offset rows, Offset columns, double* upd
   return factor_small<W>(L, rows, columns, update);
 }
 
-/// Rows below that are finished, and columns of their update that are made, at a time.
+/// Rows below the supernode per task of the triangular solve, and columns per task of the update.
 constexpr Offset below_at_once = 128;
 
 template <int W>
@@ -190,7 +192,7 @@ Offset factor_large(double* L, Offset all_rows, Offset all_columns, double* upda
     (W == 1 ? dpotrf_ : zpotrf_)("L", &columns, L, &rows, &failed);
   }
   if (failed > 0) return failed - 1;
-  for (Offset j = 0; j < all_columns; ++j)  // OpenBLAS does not stop at NaN
+  for (Offset j = 0; j < all_columns; ++j)  // OpenBLAS does not report NaN pivots
     if (!std::isfinite(L[j * (all_rows + 1) * W])) return j;
   double* L_below = L + all_columns * W;
   detail::parallel_chunks(below, below_at_once, threads, [&](Offset begin, Offset end) {
@@ -231,21 +233,21 @@ template Offset factor_front<2>(double*, Offset, Offset, double*, unsigned);
 
 namespace {
 
-/// What supernodes leave to one above them: rows of its front, and the lower triangle of a square of numbers.
+/// An update matrix: the Schur complement that eliminated supernodes pass to an ancestor.
 struct Update {
-  std::span<const std::int32_t> index;
-  std::unique_ptr<double[]> numbers;
+  std::span<const std::int32_t> index;  ///< rows, in elimination order
+  std::unique_ptr<double[]> numbers;    ///< size() x size(), column major; only the lower triangle is set
 
   Offset size() const { return static_cast<Offset>(index.size()); }
 };
 
-/// Updates that wait for a supernode.
+/// Update matrices that have not yet been added to the front of a supernode.
 struct Waiting {
   std::vector<Update> updates;
-  Offset numbers = 0;
+  Offset numbers = 0;  ///< entries of all updates
 };
 
-/// Of real (W = 1) or complex (W = 2) numbers.
+/// The multifrontal factorization of a real (W = 1) or complex (W = 2) matrix.
 template <int W>
 class Multifrontal {
  public:
@@ -282,15 +284,15 @@ class Multifrontal {
   }
 
  private:
-  /// Supernodes that are eliminated one after the other.
+  /// Eliminates supernodes one after another.
   class Branch {
    public:
-    /// @param for_top  takes what leaves a group, for each supernode of the top
-    /// @param threads  that share what is large
+    /// @param for_top  receives the updates from this group to the top, one entry per supernode of the top
+    /// @param threads  threads that share large fronts and updates
     explicit Branch(Multifrontal& all, std::vector<Waiting>* for_top = nullptr, unsigned threads = 1)
         : all_(all), for_top_(for_top), threads_(threads), places_(static_cast<std::size_t>(all.L_.size)) {}
 
-    /// @return as `factor_by_fronts`
+    /// Eliminates the supernodes first to last - 1. @return as `factor_by_fronts`
     Offset in_order(Offset first, Offset last) {
       last_ = last;
       for (Offset s = first; s < last; ++s)
@@ -333,8 +335,8 @@ class Multifrontal {
         }
     }
 
-    /// Adds an update to the columns of the supernode (Own), or to the square of the rows below it.
-    /// @param rows  of a column of `to`
+    /// Adds an update to the supernode's own columns (Own), or to the update matrix of the rows below it.
+    /// @param rows  number of rows of `to`
     template <bool Own>
     void add(const Update& update, const Supernode<W>& s, Offset rows, double* to) const {
       const std::span<const std::int32_t> index = update.index;
@@ -342,7 +344,8 @@ class Multifrontal {
       add_columns(update, Own ? 0 : own, Own ? own : update.size(), Own ? 0 : s.columns, rows, to);
     }
 
-    /// @param skipped  rows of the front before those of `to`
+    /// Adds the columns begin to end - 1 of an update.
+    /// @param skipped  rows of the front above the first row of `to`
     void add_columns(const Update& update, Offset begin, Offset end, Offset skipped, Offset rows, double* to) const {
       const std::span<const std::int32_t> index = update.index;
       const auto add = [&](Offset first, Offset last) {
@@ -365,8 +368,8 @@ class Multifrontal {
       return (*for_top_)[std::lower_bound(top.begin(), top.end(), number) - top.begin()];
     }
 
-    /// Hands an update over. Many that wait for the same supernode are added up, or they would take any number of times the memory
-    /// of its front.
+    /// Passes an update to the supernode `parent`. Pending updates are added up when they become much larger than its front, to bound
+    /// their memory.
     void leave(Offset parent, Update update) {
       Waiting& waiting = waiting_for(parent);
       waiting.numbers += update.size() * update.size();
@@ -385,13 +388,13 @@ class Multifrontal {
     Multifrontal& all_;
     std::vector<Waiting>* for_top_;
     unsigned threads_;
-    std::vector<std::int32_t> places_;  ///< of rows in the front at hand
-    Offset last_ = 0;                   ///< of the subtree at hand
+    std::vector<std::int32_t> places_;  ///< position of each row in the current front
+    Offset last_ = 0;                   ///< end of the current subtree's supernodes
   };
 
-  static constexpr Offset most_waiting = 4;        ///< fronts
-  static constexpr Offset least_shared = 1 << 16;  ///< numbers of an update that threads share
-  static constexpr Offset columns_at_once = 64;    ///< of such an update
+  static constexpr Offset most_waiting = 4;        ///< most entries of pending updates, in multiples of the front
+  static constexpr Offset least_shared = 1 << 16;  ///< updates with more entries are added on several threads
+  static constexpr Offset columns_at_once = 64;    ///< columns of such an update per task
 
   const SparseUpper& matrix_;
   const SupernodalPattern& pattern_;
@@ -399,7 +402,7 @@ class Multifrontal {
   SupernodalFactor L_;
   double* values_;
   unsigned threads_;
-  std::vector<Waiting> waiting_;  ///< for each supernode, but for what groups leave to the top
+  std::vector<Waiting> waiting_;  ///< pending updates of each supernode, without those from groups to the top
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
 /// \file
-/// The dense step of a sparse factorization: the columns of one supernode are eliminated from its front.
+/// Multifrontal factorization: each supernode is eliminated in a dense matrix, its front.
 #pragma once
 
 #include "ahm/types.hpp"
@@ -7,24 +7,25 @@
 
 namespace ahm {
 
-/// Whether the BLAS takes a front.
+/// Whether a front is large enough to be factored by the BLAS.
 constexpr bool is_large_front(Offset rows, Offset columns) { return rows * rows * columns > Offset{1} << 24; }
 
-/// Factors the block of a supernode of real (W = 1) or complex (W = 2) numbers in place, and finds what it takes from the rows
-/// below: with the own rows of L first, L <- chol(L), and update <- -L_below L_below^H.
+/// Factors the columns of a supernode in place, L <- chol(L), and computes its update matrix, update <- -L_below L_below^H. The first
+/// `columns` rows of L are the supernode's own rows, the others are L_below. Real (W = 1) or complex (W = 2).
 ///
-/// Small fronts by loops of our own, since the BLAS spends its time on calls and copies there; large ones by LAPACK's.
+/// Large fronts are factored by LAPACK. For small fronts the BLAS spends its time on calls and copies, so they have kernels of our own.
 /// @param L       rows x columns, column major; its upper triangle is left undefined
-/// @param update  (rows - columns)^2, column major: the lower triangle is written, the upper one undefined
-/// @param threads  that share a large front; the same bits on any number
-/// @return the number of pivots that are positive and finite, which is `columns` if all are
-/// @throws ResourceExhausted, as `BlasBuffer`, none of which may live on this thread
+/// @param update  (rows - columns)^2, column major; only the lower triangle is defined
+/// @param threads  threads that share a large front; the result has the same bits for any number
+/// @return number of columns before the first pivot that is not positive and finite; `columns` if there is none
+/// @throws ResourceExhausted (as `BlasBuffer`; this thread must not hold one)
 template <int W>
 Offset factor_front(double* L, Offset rows, Offset columns, double* update, unsigned threads = 1);
 
-/// @param values   of L, pattern.numbers() of them, which need not be initialized
-/// @param threads  among which groups are shared; the same bits on any number
-/// @return the first column, in the order of elimination, whose pivot is not positive and finite; the number of rows if all are
+/// Factors a matrix.
+/// @param values   out: pattern.numbers() entries of L; need not be initialized
+/// @param threads  threads that share the groups of the pattern; the result has the same bits for any number
+/// @return the first column, in elimination order, whose pivot is not positive and finite; the number of rows if there is none
 Offset factor_by_fronts(const SparseUpper& matrix, const SupernodalPattern& pattern, const FactorEntries& entries,
                         double* values, unsigned threads);
 

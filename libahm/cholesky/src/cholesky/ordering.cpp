@@ -15,11 +15,11 @@ namespace {
 
 constexpr const char* out_of_memory = "symbolic analysis: out of memory in the ordering";
 constexpr const char* no_order =
-    "symbolic analysis: METIS ended without an order: out of memory, or interrupted by a signal";
+    "symbolic analysis: METIS returned no ordering: out of memory, or interrupted by a signal";
 
 std::vector<std::int32_t> by_minimum_degree(const SparseUpper& pattern) {
   if (pattern.rows.size() > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()))
-    throw ResourceExhausted("symbolic analysis: the matrix is too large for the ordering's numbers");
+    throw ResourceExhausted("symbolic analysis: the matrix is too large for the 32-bit ordering");
   const std::vector<std::int32_t> begin(pattern.column_begin.begin(), pattern.column_begin.end()),
       rows(pattern.rows.begin(), pattern.rows.end());
   std::vector<std::int32_t> order(static_cast<std::size_t>(pattern.size()));
@@ -30,12 +30,12 @@ std::vector<std::int32_t> by_minimum_degree(const SparseUpper& pattern) {
   return order;
 }
 
-/// CHOLMOD's workspace.
+/// Owns CHOLMOD's workspace.
 class Common {
  public:
   Common() {
     cholmod_l_start(&common_);
-    common_.print = 0;  // the library never prints
+    common_.print = 0;  // libahm does not print
   }
   ~Common() { cholmod_l_finish(&common_); }
   Common(const Common&) = delete;
@@ -66,7 +66,7 @@ std::vector<std::int32_t> by_nested_dissection(const SparseUpper& pattern) {
   view.xtype = CHOLMOD_PATTERN;
   view.dtype = CHOLMOD_DOUBLE;
   view.sorted = view.packed = 1;
-  // METIS draws from the process' random numbers, which it sets to a beginning of its own: one order at a time, or none is repeated.
+  // METIS seeds and uses the random number generator of the process. Concurrent calls would make the ordering irreproducible.
   static std::mutex mutex;
   const std::scoped_lock lock(mutex);
   Common common;
@@ -75,7 +75,7 @@ std::vector<std::int32_t> by_nested_dissection(const SparseUpper& pattern) {
   if (common.get()->status == CHOLMOD_OUT_OF_MEMORY) throw ResourceExhausted(out_of_memory);
   if (!done || common.get()->status < 0)
     throw Error("symbolic analysis: METIS failed with status " + std::to_string(common.get()->status));
-  if (!is_permutation(order)) throw ResourceExhausted(no_order);  // CHOLMOD does not ask how METIS ended
+  if (!is_permutation(order)) throw ResourceExhausted(no_order);  // CHOLMOD does not check the return value of METIS
   return {order.begin(), order.end()};
 }
 

@@ -10,7 +10,7 @@
 
 namespace ahm {
 
-/// @return which row of the matrix comes first, second, ...
+/// @return row numbers of the matrix in elimination order
 /// @throws ResourceExhausted
 std::vector<std::int32_t> elimination_order(const SparseUpper& pattern, Ordering ordering);
 

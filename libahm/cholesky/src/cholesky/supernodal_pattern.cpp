@@ -8,15 +8,15 @@
 namespace ahm {
 namespace {
 
-/// Smaller factors are read in less time than threads take to begin.
+/// Smaller factors have no groups: starting threads takes longer than reading the factor.
 constexpr Offset least_numbers = 1 << 19;
-/// More make the top, which one thread goes through, larger.
+/// Number of groups. More groups make the top larger, whose supernodes are processed one after another.
 constexpr std::size_t groups = 4;
 
-/// Of every supernode's whole subtree.
+/// The subtree of each supernode in the elimination tree.
 struct Subtrees {
-  std::vector<Offset> first;    ///< the least descendant
-  std::vector<Offset> numbers;  ///< of the factor
+  std::vector<Offset> first;    ///< smallest supernode of the subtree
+  std::vector<Offset> numbers;  ///< entries of the factor in the subtree
 };
 
 Subtrees subtrees_of(const SupernodalFactor& L, std::span<const Offset> parents) {
@@ -42,7 +42,7 @@ std::unique_ptr<const SolveGroups> solve_groups(const SupernodalFactor& L, std::
   const Subtrees subtrees = subtrees_of(L, parent);
   const auto is_top = [&](Offset s) { return subtrees.numbers[s] > all / static_cast<Offset>(groups); };
   const auto supernodes = static_cast<Offset>(parent.size());
-  std::vector<Offset> roots;  // of the subtrees below the top, the largest first
+  std::vector<Offset> roots;  // roots of the subtrees below the top, largest first
   for (Offset s = supernodes; s-- > 0;)
     if (!is_top(s) && (parent[s] < 0 || is_top(parent[s]))) roots.push_back(s);
   std::stable_sort(roots.begin(), roots.end(),
@@ -82,9 +82,10 @@ Numbers inverse(const Numbers& order) {
   return place;
 }
 
-/// The entries of a matrix by one of their two places in the order of elimination.
-/// @param key     key(i, j) of the entry with its row at place i and its column at place j
-/// @param member  member(i, j, p) of entry p, which is kept
+/// Groups the entries of a matrix by the position of their row or column in elimination order.
+/// @param place   position of each row in elimination order
+/// @param key     key(i, j): group of the entry with row position i and column position j
+/// @param member  member(i, j, p): what to store for entry p of the matrix
 template <class Member, class Key, class MemberOf>
 EntriesBy<Member> entries_by(const SparseUpper& matrix, const Numbers& place, const Key& key, const MemberOf& member) {
   const auto for_each_entry = [&](const auto& visit) {
@@ -103,7 +104,7 @@ EntriesBy<Member> entries_by(const SparseUpper& matrix, const Numbers& place, co
   return result;
 }
 
-/// Of each row the columns before it, and itself.
+/// Columns of each row of the matrix up to the diagonal, in elimination order.
 using Before = EntriesBy<std::int32_t>;
 
 Before columns_before(const SparseUpper& matrix, const Numbers& place) {
@@ -119,7 +120,7 @@ FactorEntries factor_entries(const SparseUpper& matrix, const Numbers& place) {
   });
 }
 
-/// The elimination tree of columns [Liu90]; -1: a root.
+/// Parent of each column in the elimination tree [Liu90]; -1: root.
 Numbers elimination_tree(const Before& before, std::int32_t n) {
   Numbers parent(static_cast<std::size_t>(n), -1), ancestor(parent);
   for (std::int32_t row = 0; row < n; ++row)
@@ -133,7 +134,7 @@ Numbers elimination_tree(const Before& before, std::int32_t n) {
   return parent;
 }
 
-/// Children before parents, subtrees together.
+/// Columns in postorder: children before parents, subtrees contiguous.
 Numbers postorder(const Numbers& parent) {
   const auto n = static_cast<std::int32_t>(parent.size());
   Numbers first_child(parent.size(), -1), next_sibling(parent.size(), -1), order, waiting;
@@ -157,7 +158,7 @@ Numbers postorder(const Numbers& parent) {
   return order;
 }
 
-/// Rows of each column of the factor, the diagonal among them; columns are in postorder [GNP94].
+/// Number of rows of each column of the factor, including the diagonal [GNP94]. Columns must be in postorder.
 class ColumnCounts {
  public:
   ColumnCounts(const FactorEntries& entries, const Numbers& parent)
@@ -180,8 +181,8 @@ class ColumnCounts {
   Numbers counts;
 
  private:
-  /// Where column j is a leaf of the subtree of columns that row i has entries in, but for the first it takes from the count of its
-  /// lowest ancestor in common with the leaf before.
+  /// Adds entry (i, j) of the matrix. If column j is a leaf of row i's subtree, its count increases by one. For all leaves except the
+  /// first, the count of the lowest common ancestor with the previous leaf decreases by one.
   void add_leaf(std::int32_t i, std::int32_t j) {
     if (i <= j || first_[j] <= most_[i]) return;
     most_[i] = first_[j];
@@ -197,12 +198,14 @@ class ColumnCounts {
   Numbers first_, most_, last_leaf_, ancestor_;
 };
 
-/// Columns in a row of the tree, each the only child of the next, and of the same rows but for its own.
+/// Consecutive columns that form a chain of the elimination tree: a supernode. Each column is the only child of the next one, and has
+/// the same rows and one more.
 struct Run {
   std::int32_t first, columns, rows;
-  double zeros = 0;  ///< that joining has brought in
+  double zeros = 0;  ///< explicit zeros added by merging
 
-  /// Joins the run before, whose last column is a child of this one's first, if that brings in few zeros.
+  /// Merges the preceding run, whose last column is a child of this run's first column, if this adds few explicit zeros.
+  /// @return whether the runs were merged
   bool join(const Run& child) {
     const double more = static_cast<double>(child.columns) * (child.columns + rows - child.rows), all = zeros + more;
     const double width = child.columns + columns, size = width * (width + 1) / 2 + width * (rows - columns);
@@ -226,7 +229,7 @@ std::vector<Run> runs_of(const Numbers& parent, const Numbers& counts) {
     else
       runs.push_back({j, 1, counts[j]});
   }
-  std::vector<Run> joined;  // the last one first
+  std::vector<Run> joined;  // in reverse order
   for (auto run = runs.rbegin(); run != runs.rend(); ++run)
     if (joined.empty() || parent[run->first + run->columns - 1] != joined.back().first || !joined.back().join(*run))
       joined.push_back(*run);
@@ -234,8 +237,10 @@ std::vector<Run> runs_of(const Numbers& parent, const Numbers& counts) {
   return joined;
 }
 
-/// Rows are appended in ascending order, to all supernodes from those of its columns to its own.
-/// @param post, place  columns in postorder, and where they lie there
+/// Computes the rows of each supernode. Rows are appended in ascending order. Each row belongs to all supernodes on the tree paths
+/// from the supernodes of its columns to its own.
+/// @param post   columns in postorder
+/// @param place  position of each column in `post`
 void find_indices(SupernodalPattern& pattern, const Numbers& supernode_of, const Before& before, const Numbers& post,
                   const Numbers& place) {
   const auto n = static_cast<std::int32_t>(supernode_of.size());

@@ -1,5 +1,5 @@
 /// \file
-/// A Cholesky factor by supernodes: columns of the same rows, stored as dense blocks.
+/// Supernodal storage of a Cholesky factor. A supernode is a set of columns with the same rows, stored as a dense block.
 #pragma once
 
 #include <algorithm>
@@ -14,8 +14,8 @@
 
 namespace ahm {
 
-/// P K P^T = L L^H by supernodes: supernode s has the columns [super[s], super[s + 1]), the rows
-/// indices[row_begin[s]...], its own columns first, and the dense column-major values at value_begin[s].
+/// The factor of P K P^T = L L^H. Supernode s has the columns super[s] to super[s + 1] - 1, the rows indices[row_begin[s]...] (those
+/// of its own columns first), and dense column-major values at value_begin[s].
 struct SupernodalFactor {
   Offset size;
   bool is_complex;
@@ -25,7 +25,7 @@ struct SupernodalFactor {
   const double* values;  ///< complex: interleaved pairs
 
   Offset supernodes() const { return static_cast<Offset>(super.size()) - 1; }
-  /// Rows of the largest supernode.
+  /// Largest number of rows of a supernode.
   Offset most_rows() const {
     Offset most = 0;
     for (Offset s = 0; s < supernodes(); ++s) most = std::max(most, row_begin[s + 1] - row_begin[s]);
@@ -44,38 +44,38 @@ struct Supernode {
         begin(L.value_begin[s]),
         values(L.values + begin * W) {}
   Offset first, columns, rows;
-  const std::int32_t* index;  ///< of its rows
-  Offset begin;               ///< of its numbers among those of the factor
+  const std::int32_t* index;  ///< row numbers
+  Offset begin;               ///< first entry of the supernode among the entries of the factor
   const double* values;
   const double* at(Offset row, Offset column) const { return values + (column * rows + row) * W; }
 };
 
-/// Subtrees of the elimination tree, in groups of about the same work, and the supernodes above them all. On the way down
-/// groups touch rows of their own, and add to those of the top; on the way up they read the top. The groups are the same on any
-/// number of threads, and so are the sums.
+/// Subtrees of the elimination tree in groups of similar work, and the supernodes above all subtrees (the top). In the forward solve a
+/// group writes its own rows and adds to rows of the top. In the backward solve it reads rows of the top. Groups, and so rounding
+/// errors, do not depend on the number of threads.
 struct SolveGroups {
   struct Subtree {
-    Offset first, last;  ///< its supernodes
-    Offset end;          ///< rows before this one are its own
+    Offset first, last;  ///< supernodes first to last - 1
+    Offset end;          ///< rows from `end` on belong to ancestors
   };
-  std::vector<Subtree> subtrees;    ///< group after group
-  std::vector<std::size_t> begin;   ///< of each group among them, and their end
-  std::vector<Offset> top;          ///< supernodes above, in their order
-  std::vector<std::int32_t> place;  ///< of every row among those of the top; -1: in a subtree
+  std::vector<Subtree> subtrees;    ///< subtrees sorted by group
+  std::vector<std::size_t> begin;   ///< first subtree of each group, and the number of subtrees
+  std::vector<Offset> top;          ///< supernodes of the top, ascending
+  std::vector<std::int32_t> place;  ///< position of each row among the rows of the top; -1: in a subtree
   std::size_t top_rows = 0;
 
   Offset count() const { return static_cast<Offset>(begin.size()) - 1; }
   std::size_t bytes() const { return place.size() * sizeof(std::int32_t); }
 };
 
-/// Null where they would not pay, for small factors.
-/// @param parent  of each supernode, which are in postorder; -1: of a root
+/// Makes the groups; null for small factors, where they would not save time.
+/// @param parent  parent of each supernode, in postorder; -1: root
 std::unique_ptr<const SolveGroups> solve_groups(const SupernodalFactor& L, std::span<const Offset> parent);
 
-/// The entries of a matrix by places in the order of elimination.
+/// The entries of a matrix, grouped by row or column in elimination order.
 template <class Member>
 struct EntriesBy {
-  std::vector<Offset> begin;  ///< places + 1
+  std::vector<Offset> begin;  ///< rows + 1 positions in `members`
   std::vector<Member> members;
 
   std::span<const Member> of(Offset place) const {
@@ -84,18 +84,18 @@ struct EntriesBy {
 };
 
 struct FactorEntry {
-  std::int32_t row;     ///< in the order of elimination
-  std::int64_t source;  ///< among the values of the matrix; ~source: its conjugate
+  std::int32_t row;     ///< row in elimination order
+  std::int64_t source;  ///< entry number in the matrix; if negative, the conjugate of entry ~source
 };
-/// Where the entries of a matrix lie in its factor, by its columns.
+/// The entries of a matrix for each column of its factor.
 using FactorEntries = EntriesBy<FactorEntry>;
 
 struct SupernodalPattern {
-  std::vector<std::int32_t> permutation, indices;  ///< as in `SupernodalFactor`, and so are the next three
-  std::vector<Offset> super, row_begin, value_begin;
-  std::vector<Offset> parent;  ///< in the elimination tree of supernodes: that of the first row below; -1: of a root
-  std::shared_ptr<const SolveGroups> groups;  ///< null: supernodes go one after the other
-  double operations = 0;  ///< of real numbers, that a factorization without the zeros in supernodes takes
+  std::vector<std::int32_t> permutation, indices;     ///< as in `SupernodalFactor`
+  std::vector<Offset> super, row_begin, value_begin;  ///< as in `SupernodalFactor`
+  std::vector<Offset> parent;  ///< parent of each supernode: the supernode of its first row below; -1: root
+  std::shared_ptr<const SolveGroups> groups;  ///< null: supernodes are processed one after another
+  double operations = 0;  ///< floating-point operations for a real matrix, without those on explicit zeros
 
   SupernodalFactor factor(bool is_complex, const double* values) const {
     return {static_cast<Offset>(permutation.size()),
@@ -112,12 +112,12 @@ struct SupernodalPattern {
 
 struct SymbolicAnalysis {
   SupernodalPattern pattern;
-  FactorEntries entries;  ///< asked for while a matrix is factored
+  FactorEntries entries;  ///< used by the numeric factorization
 };
 
-/// Column counts by skeletons [GNP94], supernodes as in CHOLMOD [CDHR08]: columns of the same rows, and small ones joined at the
-/// price of some zeros.
-/// @param order  of elimination, a row each; that of the pattern goes along its elimination tree in postorder, and leaves the same fill
+/// Symbolic analysis. Column counts use skeletons [GNP94]. Supernodes are columns with the same rows; small ones are merged at the
+/// cost of some explicit zeros, as in CHOLMOD [CDHR08].
+/// @param order  row numbers in elimination order. The pattern uses a postorder of its elimination tree, which has the same fill
 /// @throws ResourceExhausted
 SymbolicAnalysis analyze(const SparseUpper& matrix, const std::vector<std::int32_t>& order);
 

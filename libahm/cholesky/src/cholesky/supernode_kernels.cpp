@@ -3,10 +3,10 @@
 namespace ahm {
 namespace {
 
-/// From the columns that are read to those that are asked for meanwhile.
+/// Prefetch distance, in columns.
 constexpr Offset ahead_columns = 8;
 
-/// A number of a vector and of the factor.
+/// A real (W = 1) or complex (W = 2) number.
 template <int W>
 struct Number {
   double re, im = 0;
@@ -36,7 +36,7 @@ struct Number {
   }
 };
 
-/// y -= x times the numbers of a column of the factor, four at once.
+/// y -= x L_r for four consecutive doubles of a column of the factor.
 template <int W>
 [[gnu::always_inline]] inline void subtract_product(Number<W> x, const Four* column, Four* y) {
   if constexpr (W == 1)
@@ -45,7 +45,7 @@ template <int W>
     *y -= x.re * *column + Four{-x.im, x.im, -x.im, x.im} * __builtin_shufflevector(*column, *column, 1, 0, 3, 2);
 }
 
-/// sum conj(L_r) y_r over the rows of a column, four numbers at once.
+/// Computes sum_r conj(L_r) y_r over the rows of a column, four doubles at a time.
 template <int W>
 struct Product {
   Four straight{}, crossed{};
@@ -63,15 +63,16 @@ struct Product {
   }
 };
 
-/// Asks for the numbers that are read eight columns later (on the way up: with a minus), by lines: columns are too short for the
-/// processor to find out by itself how to read on, the more so on the way up. At the supernode's ends they are its neighbours'.
+/// Prefetches entries of the factor that are read `ahead_columns` columns later, once per cache line. Columns are too short for the
+/// hardware prefetcher, above all in the backward solve. At the ends of a supernode this prefetches from the adjacent supernodes.
+/// @param ahead  distance in doubles; negative in the backward solve
 template <int J>
 [[gnu::always_inline]] inline void prefetch(const double* const (&column)[J], Offset r, Offset ahead) {
   if (constexpr Offset half_line = 4; r & half_line)
     for (int a = 0; a < J; ++a) __builtin_prefetch(column[a] + r + ahead);
 }
 
-/// J columns of a supernode, from j on, and what their pivots are divided by.
+/// The columns j to j + J - 1 of a supernode, and the inverses of their pivots.
 template <int W, int J>
 struct Columns {
   const double* column[J];
@@ -86,7 +87,7 @@ struct Columns {
   [[gnu::always_inline]] Number<W> at(int a, Offset place) const { return Number<W>::at(column[a] + place); }
 };
 
-/// Columns j to j + J of the way down.
+/// Forward substitution with the columns j to j + J - 1.
 template <int W, int K, int J>
 [[gnu::always_inline]] inline void forward_columns(const Supernode<W>& s, Offset j, double* y) {
   const Offset rows = s.rows * W;
@@ -120,8 +121,8 @@ template <int W, int K, int J>
     }
 }
 
-/// Columns j to j + J of the way up. The last rows first: those of the columns that were solved for just now may still be on
-/// their way.
+/// Backward substitution with the columns j to j + J - 1. Reads the last rows first: values of the columns solved just before may not
+/// be available yet.
 template <int W, int K, int J>
 [[gnu::always_inline]] inline void backward_columns(const Supernode<W>& s, Offset j, double* y) {
   const Offset rows = s.rows * W;
@@ -152,7 +153,7 @@ template <int W, int K, int J>
   }
 }
 
-/// Columns at a time: as many as registers hold sums of.
+/// Columns per step: as many as fit into the registers.
 template <int W, int K>
 constexpr Offset at_once = W* K <= 2 ? 4 : 2;
 

@@ -1,20 +1,20 @@
 /// \file
-/// Four numbers at once.
+/// Vectorized kernels of the triangular solves, with four doubles per vector.
 #pragma once
 
 #include "cholesky/supernodal_pattern.hpp"
 
 namespace ahm {
 
-/// Four real numbers or two complex ones, anywhere in memory. By pointers only: compilers take it of references that they are
-/// aligned, and of values in parameters that the processor has registers for them.
+/// Four real or two complex numbers at any address. Pass them by pointer only: compilers assume that references are aligned, and that
+/// the processor has registers for parameters passed by value.
 using Four [[gnu::vector_size(4 * sizeof(double)), gnu::aligned(alignof(double)), gnu::may_alias]] = double;
 
 [[gnu::always_inline]] inline const Four* four(const double* numbers) { return reinterpret_cast<const Four*>(numbers); }
 [[gnu::always_inline]] inline Four* four(double* numbers) { return reinterpret_cast<Four*>(numbers); }
 
-/// Both take K vectors of s.rows numbers, one after the other: own rows first, then those below. Complex numbers (W = 2) are
-/// interleaved pairs. With AVX2 and without, the same bits.
+/// Both kernels take K vectors of s.rows numbers, stored one after another: the supernode's own rows first, then the rows below.
+/// Complex numbers (W = 2) are interleaved pairs. The results have the same bits with and without AVX2.
 template <int W>
 struct SupernodeKernels {
   using Kernel = void (*)(const Supernode<W>& s, double* y);
@@ -22,7 +22,7 @@ struct SupernodeKernels {
   Kernel backward;  ///< y_own <- L_own^-H (y_own - L_below^H y_below)
 };
 
-/// For K = 1 to `max_narrow_columns` vectors, as fast as the processor can.
+/// The kernels for K vectors, 1 <= K <= `max_narrow_columns`. Use AVX2 if the processor has it.
 template <int W, int K>
 SupernodeKernels<W> supernode_kernels();
 

@@ -10,7 +10,7 @@
 
 namespace ahm {
 
-/// Columns of real (W = 1) or complex (W = 2) numbers, one after the other.
+/// Right-hand sides in elimination order, column major; real (W = 1) or complex (W = 2).
 template <int W>
 class PermutedColumns {
  public:
@@ -19,7 +19,7 @@ class PermutedColumns {
 
   double* at(Offset column, Offset row) const { return x_.get() + (column * L_.size + row) * W; }
 
-  /// Copies columns from X, in the order of the matrix, or to it.
+  /// Copies columns from X, which is in the order of the matrix (In), or back to X.
   template <bool In>
   void permute(std::span<double> X, Offset columns, unsigned threads = 1) {
     detail::parallel_chunks(L_.size, 1 << 15, threads, [&](Offset begin, Offset end) {
@@ -33,8 +33,8 @@ class PermutedColumns {
     });
   }
 
-  /// Whether the own rows of a supernode are. A point source is zero almost everywhere, and stays so outside its path to the root
-  /// of the elimination tree.
+  /// Whether the supernode's own rows are zero in all columns. A point source is zero almost everywhere. In the forward solve it stays
+  /// zero outside its path to the root of the elimination tree.
   bool is_zero(const Supernode<W>& s, Offset columns) const {
     for (Offset c = 0; c < columns; ++c)
       if (!std::all_of(at(c, s.first), at(c, s.first + s.columns), [](double value) { return value == 0; }))
@@ -49,7 +49,7 @@ class PermutedColumns {
 
 namespace {
 
-/// For K columns of real (W = 1) or complex (W = 2) numbers.
+/// Solves for K columns, real (W = 1) or complex (W = 2).
 template <int W, int K>
 class NarrowSolve {
  public:
@@ -116,8 +116,8 @@ class NarrowSolve {
     return [this](int column, Offset row) { return at(column, row); };
   }
 
-  /// L y = x
-  /// @param target  target(column, row): what a row below is taken from
+  /// Solves L y = x for the rows of a supernode.
+  /// @param target  target(column, row): where to add the contribution to a row below
   template <class Target>
   void forward(const Supernode<W>& s, Buffer& y, const Target& target) {
     if (x_.is_zero(s, K)) return;
@@ -135,7 +135,7 @@ class NarrowSolve {
     }
   }
 
-  /// L^H x = y
+  /// Solves L^H x = y for the rows of a supernode.
   void backward(const Supernode<W>& s, Buffer& y) {
     for (int c = 0; c < K; ++c) {
       double* column = y.data() + c * s.rows * W;
@@ -182,16 +182,16 @@ void narrow_solve(const SupernodalFactor& L, std::span<double> X, Offset columns
 
 namespace {
 
-/// Numbers of a row of X that are at work at once: 16 real columns, or the real and then the imaginary parts of 8 complex ones.
+/// Doubles per row of a block: 16 real columns, or the real parts and then the imaginary parts of 8 complex columns.
 constexpr int width = 16;
 
-/// Numbers that are at work at once by one instruction.
+/// A SIMD vector of N doubles.
 template <int N>
 struct Lanes {
   using Type [[gnu::vector_size(N * sizeof(double)), gnu::aligned(alignof(double)), gnu::may_alias]] = double;
 };
 
-/// A sum of rows, each times a number of the factor, real (W = 1) or complex (W = 2); it stays in registers of N numbers.
+/// A sum of rows times entries of the factor, real (W = 1) or complex (W = 2), in registers of N doubles.
 template <int W, int N>
 struct RowSum {
   using Lane = typename Lanes<N>::Type;
@@ -230,7 +230,7 @@ class BlockSolve {
 
   explicit BlockSolve(const SupernodalFactor& L) : L_(L), x_(static_cast<std::size_t>(L.size) * width) {}
 
-  /// For up to `columns_at_once` columns.
+  /// Solves for up to `columns_at_once` columns.
   void solve(std::span<double> X, Offset columns) {
     if (columns < columns_at_once) std::fill(x_.begin(), x_.end(), 0.0);
     permute<true>(X, columns);
@@ -259,10 +259,10 @@ class BlockSolve {
     for (int c = 0; c < width; ++c) x[c] /= pivot;
   }
 
-  /// L y = x
+  /// Solves L y = x for the rows of a supernode.
   void forward(const Supernode<W>& s) {
     double* own = row(s.first);
-    // A point source is zero almost everywhere, and stays so outside its path to the root of the elimination tree.
+    // See `PermutedColumns::is_zero`.
     if (std::all_of(own, own + s.columns * width, [](double value) { return value == 0; })) return;
     for (Offset r = 0; r < s.columns; ++r) {
       RowSum<W, N> sum;
@@ -277,7 +277,7 @@ class BlockSolve {
     }
   }
 
-  /// L^H x = y
+  /// Solves L^H x = y for the rows of a supernode.
   void backward(const Supernode<W>& s) {
     double* own = row(s.first);
     for (Offset j = s.columns; j-- > 0;) {
@@ -309,7 +309,7 @@ void solve_by_lanes(const SupernodalFactor& L, std::span<double> X, Offset colum
 }
 
 #ifdef __x86_64__
-/// With four numbers at once, where the processor can: sum by sum the same numbers, bit for bit.
+/// Uses vectors of four doubles. The results have the same bits as with vectors of two.
 [[gnu::target("avx2"), gnu::flatten]] void solve_by_fours(const SupernodalFactor& L, std::span<double> X,
                                                           Offset columns) {
   solve_by_lanes<4>(L, X, columns);
@@ -327,7 +327,7 @@ void block_solve(const SupernodalFactor& L, std::span<double> X, Offset columns)
 
 namespace {
 
-/// Columns at a time: the BLAS gains nothing by more, and they stay in memory that grows with their number.
+/// Columns per block. With more columns the BLAS is not faster, and the block needs more memory.
 constexpr Offset at_once = 64;
 
 template <int W>
@@ -348,13 +348,13 @@ class BlasSolve {
   }
 
  private:
-  /// y_own <- L_own^-1 y_own, or by its adjoint
+  /// y_own <- L_own^-1 y_own (how = "N") or L_own^-H y_own (how = "C").
   void divide(const Supernode<W>& s, const char* how) {
     const int own = static_cast<int>(s.columns), rows = static_cast<int>(s.rows);
     (W == 1 ? dtrsm_ : ztrsm_)("L", "L", how, "N", &own, &columns_, one, s.values, &rows, x_.at(0, s.first), &ld_);
   }
 
-  /// Calls visit(number of y, number of below) for each row below.
+  /// Calls visit(entry of y, entry of `below_`) for each row below the supernode.
   template <class Visit>
   void each_below(const Supernode<W>& s, const Visit& visit) {
     const Offset below = s.rows - s.columns;

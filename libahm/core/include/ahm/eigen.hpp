@@ -1,9 +1,9 @@
 /// \file
-/// Results seen as Eigen matrices, without a copy. Header only, so that no Eigen object crosses the library's border
-/// and the caller's own compiler flags decide its alignment.
+/// Views of results as Eigen matrices, without a copy. Header only: no Eigen object is passed to the compiled library, so only the
+/// caller's compiler flags determine its alignment.
 ///
-/// Eigen 3.4 is the caller's: libahm is built with it but its package neither needs nor looks for it. Before including this
-/// header, find_package(Eigen3) and link Eigen3::Eigen.
+/// The caller provides Eigen 3.4: call find_package(Eigen3) and link Eigen3::Eigen. The CMake package of libahm does not search for
+/// it.
 ///
 /// \code
 /// auto phi = ahm::coordinates(map);              // n x d
@@ -20,11 +20,11 @@ namespace ahm {
 
 using RowMajorMap = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
 
-/// phi, n x d; valid while the map lives.
+/// Coordinates phi of all vertices, n x d. Valid while the map exists.
 inline RowMajorMap coordinates(const LogMap& map) { return {map.coordinates().data(), map.size(), map.dimension()}; }
 RowMajorMap coordinates(LogMap&&) = delete;
 
-/// n x width; valid while the field lives.
+/// Values of all vertices, n x width. Valid while the field exists.
 inline RowMajorMap values(const VertexField& field) {
   return {field.values.data(), static_cast<Eigen::Index>(field.status.size()), field.width};
 }

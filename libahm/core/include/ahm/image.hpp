@@ -1,5 +1,5 @@
 /// \file
-/// Images in memory, with transparency: textures and pictures. `ahm/io/image.hpp` reads and writes their files.
+/// Images in memory, with transparency. `ahm/io/image.hpp` reads and writes image files.
 ///
 /// \code
 /// ahm::Image image(640, 480);                                  // transparent black
@@ -16,13 +16,13 @@
 
 namespace ahm {
 
-/// Pixels, eight bits each of red, green, blue and opacity.
+/// An image of 8-bit red, green, blue and opacity.
 struct Image {
   int width = 0, height = 0;
-  std::vector<std::uint8_t> rgba;  ///< height x width x 4, the uppermost row first; colors not multiplied by opacity
+  std::vector<std::uint8_t> rgba;  ///< height x width x 4, top row first; colors are not multiplied by opacity
 
   Image() = default;
-  /// Transparent black.
+  /// Makes a transparent black image.
   Image(int columns, int rows)
       : width(columns), height(rows), rgba(4 * static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows)) {}
 
@@ -33,8 +33,8 @@ struct Image {
     return rgba.data() + 4 * (static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + column);
   }
 
-  /// Color at (u, v), (0, 0) the lower left corner and (1, 1) the upper right one; bilinear between the middles of the
-  /// pixels, colors weighted by opacity, constant outside. Four numbers in [0, 1].
+  /// Color and opacity at (u, v), four numbers in [0, 1]. (0, 0) is the lower left corner, (1, 1) the upper right one. Interpolates
+  /// bilinearly between pixel centers, with colors weighted by opacity. Points outside get the nearest border color.
   std::array<double, 4> sample(double u, double v) const {
     const double x = std::clamp(u * width - 0.5, 0.0, width - 1.0);
     const double y = std::clamp((1 - v) * height - 0.5, 0.0, height - 1.0);

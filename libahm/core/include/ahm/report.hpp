@@ -1,5 +1,5 @@
 /// \file
-/// What a backend found and did, as data. Programs word it; libraries only name it.
+/// Statistics and warnings of a backend, as data. The libraries only set ids and numbers; programs turn them into text.
 ///
 /// \code
 /// for (const ahm::Figure& figure : surface.report()) std::cout << figure.id << '\n';      // "flips", "seconds.graph"
@@ -20,20 +20,19 @@ namespace ahm {
 
 /// One entry of a report.
 struct Figure {
-  std::string_view id;  ///< snake_case, static storage; "group.name" for what belongs together
+  std::string_view id;  ///< snake_case, static storage; "group.name" for entries of a group
   std::variant<bool, std::int64_t, double, std::string_view> value;
 };
 
-/// In the order in which it is to be read.
+/// The entries of a report, in display order.
 using Report = std::vector<Figure>;
 
-/// Something the user should know, that was no reason to refuse the input. Each backend's header lists its ids and what
-/// their numbers and rows mean.
+/// A problem of the input that is not an error. The header of each backend lists its ids and the meaning of their numbers and rows.
 struct Warning {
   std::string_view id;          ///< snake_case, static storage
-  std::vector<double> numbers;  ///< counts and lengths (world units), as the id says
-  std::vector<Row> rows;        ///< the first ten rows concerned, where the id names rows
-  std::string name{};           ///< of a thing that is called by its name in the input, where the id says so
+  std::vector<double> numbers;  ///< counts and lengths (world units); their meaning depends on the id
+  std::vector<Row> rows;        ///< the first ten affected rows, if the id has rows
+  std::string name{};           ///< name of an object of the input, if the id has one
 };
 
 }  // namespace ahm

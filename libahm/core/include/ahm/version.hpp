@@ -1,5 +1,5 @@
 /// \file
-/// The version of libahm, for the preprocessor and for the compiler. CMake reads it from here.
+/// The version of libahm, as macros and as a type. CMake reads it from this file.
 #pragma once
 
 #define AHM_VERSION_MAJOR 0

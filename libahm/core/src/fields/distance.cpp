@@ -10,7 +10,7 @@ namespace ahm {
 VertexField distance_gradient(const TangentGraph& graph, const LogMap& map) {
   if (map.size() != graph.size() || map.frames().empty())
     throw InvalidArgument("distance_gradient: the map has no frames, or belongs to another graph");
-  const double at_source = 1e-8 * graph.mean_edge_length() * graph.length_unit();  // what rounding leaves there
+  const double at_source = 1e-8 * graph.mean_edge_length() * graph.length_unit();  // rounding error of |phi| = 0
   const auto d = static_cast<std::size_t>(map.dimension());
   VertexField gradient{
       map.dimension(), std::vector<double>(map.coordinates().size()), {map.status().begin(), map.status().end()}};

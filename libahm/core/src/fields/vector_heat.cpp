@@ -16,16 +16,16 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// Points where something is given: all in one, checked.
+/// The points with prescribed values, joined into one source.
 struct Givers {
   Source all;
-  double heat;  ///< right-hand side of a weight of 1
+  double heat;  ///< right-hand side for a weight of 1
 
   Givers(const LogMapSolver& solver, Source joined) : all(std::move(joined)) {
     check_source(all, solver.graph());
     heat = source_heat(solver.graph(), solver.operators(), all.vertices());
   }
-  /// Calls put(vertex, point, b, axes or nothing) for every sample.
+  /// Calls put(vertex, point, b, axes) for every sample. `axes` may be empty.
   template <class Put>
   void for_samples(const Put& put) const {
     const std::size_t d = static_cast<std::size_t>(all.dimension().value_or(0)), n = all.vertices().size();
@@ -40,13 +40,14 @@ unsigned threads_of(const LogMapSolver& solver, std::optional<unsigned> threads)
 }
 
 AffineHeat affine_heat(const LogMapSolver& solver, const Source& source, std::optional<unsigned> threads) {
-  constexpr Variant variant = Variant::localized;  // Y is the radial field
+  constexpr Variant variant = Variant::localized;  // its unknown Y is the radial field times lambda
   return AffineHeat(solver.graph(), solver.operators(), variant,
                     {right_hand_side_of(source, solver.graph(), solver.operators(), variant)},
                     threads_of(solver, threads));
 }
 
-/// Status of every vertex, and NaN where it is not ok. `reached(i)`: whether the value at vertex i can be trusted.
+/// Sets the status of every vertex, and NaN where it is not ok.
+/// @param reached  reached(i): whether the value at vertex i is reliable
 template <class Reached>
 void finish(VertexField& field, const LogMapSolver& solver, const Source& source, const Reached& reached) {
   const auto width = static_cast<std::size_t>(field.width);
@@ -69,10 +70,10 @@ void check_values(std::span<const double> values, std::size_t expected, const ch
                           std::to_string(values.size()) + " (or one is not finite)");
 }
 
-/// sum_k v_k heat from k / sum_k heat from k, and the lower sum.
+/// Weighted mean at each vertex: sum_k v_k h_k / sum_k h_k, with the heat h_k from sample k.
 struct Blend {
-  std::vector<double> values, heat;
-  double least = 0;  ///< the heat that counts
+  std::vector<double> values, heat;  ///< weighted means; sum_k h_k
+  double least = 0;                  ///< smallest heat of a reliable value
 
   bool reached(std::size_t i) const { return heat[i] >= least; }
 };
@@ -115,12 +116,12 @@ VertexField transport(const LogMapSolver& solver, Source points, std::size_t cou
     check_values(vectors, count * d, "vectors");
     const Givers givers(solver, std::move(points));
 
-    // Lengths by A ([SSC19] Alg. 1, steps II and III) ...
+    // Solve with A for the lengths ([SSC19] Alg. 1, steps II and III).
     std::vector<double> lengths;
     for (std::size_t k = 0; k < count; ++k) lengths.push_back(length(vectors.subspan(k * d, d)));
     const Blend blend = blend_scalars(solver, givers, lengths);
 
-    // ... directions by B (step I).
+    // Solve with B for the directions (step I).
     const double longest = lengths.empty() ? 0.0 : *std::max_element(lengths.begin(), lengths.end());
     VertexField field{static_cast<int>(d), std::vector<double>(n * d, 0.0), {}};
     givers.for_samples([&](std::size_t vertex, std::size_t point, double b, std::span<const double> U) {

@@ -1,5 +1,5 @@
 /// \file
-/// Part of a graph as a graph of its own.
+/// Extracts a subgraph.
 #pragma once
 
 #include <memory>
@@ -11,12 +11,13 @@
 
 namespace ahm {
 
-/// Cuts the given vertices out of a graph, with its mean edge length. Edges to the
-/// outside are dropped, which leaves the natural boundary: affine maps stay exact on flat geometry.
-/// @param local_of    global vertex -> its place in `vertices`, or negative
-/// @param on_outside  called as (place in `vertices`, star, edge) for each dropped edge of weight other than 0; returns
-///                    what it adds to the vertex's mass
-/// @param beyond      so many vertices more, without edges and of mass 1: places from vertices.size() on, where edges lead
+/// The subgraph of some vertices, with the mean edge length of the whole graph. Edges to other vertices are dropped. This gives natural
+/// boundary conditions, for which affine maps stay exact on flat geometry.
+/// @param local_of    local_of(vertex): number of a vertex of `graph` in the subgraph; negative: outside
+/// @param on_outside  on_outside(position in `vertices`, star, edge): called for each dropped edge of nonzero weight; returns the
+///                    mass to add to the vertex
+/// @param beyond      number of additional vertices, without out-edges and with mass 1. They are numbered from vertices.size() on;
+///                    `local_of` may map vertices to them
 template <class LocalOf, class OnOutside>
 CsrGraph cut_out(const TangentGraph& graph, std::span<const Index> vertices, const LocalOf& local_of,
                  const OnOutside& on_outside, std::size_t beyond = 0) {

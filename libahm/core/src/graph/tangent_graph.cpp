@@ -29,7 +29,7 @@ Components connected_components(const TangentGraph& graph) {
   }
   Components result{std::vector<Index>(static_cast<std::size_t>(n)), 0};
   for (Index i = 0; i < n; ++i) {
-    const Index root = sets.root(i);  // the smallest of the component
+    const Index root = sets.root(i);  // the smallest vertex of the component
     result.of_vertex[i] = root == i ? result.count++ : result.of_vertex[root];
   }
   return result;
@@ -53,7 +53,7 @@ void check_rows(const CsrGraphData& g) {
   const auto n = static_cast<Index>(g.masses.size());
   for (std::size_t e = 0; e < g.neighbors.size(); ++e)
     if (g.neighbors[e] < 0 || g.neighbors[e] >= n)
-      throw InvalidGraph("CsrGraph: neighbour " + std::to_string(g.neighbors[e]) + " of edge " + std::to_string(e) +
+      throw InvalidGraph("CsrGraph: neighbor " + std::to_string(g.neighbors[e]) + " of edge " + std::to_string(e) +
                          " is outside [0, " + std::to_string(n) + ")");
 }
 

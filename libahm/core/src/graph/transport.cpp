@@ -8,7 +8,7 @@
 namespace ahm {
 namespace {
 
-/// The nearer of the nearest rotation and the nearest reflection, by the sign of the determinant.
+/// Replaces a 2 x 2 matrix by the nearest rotation (determinant >= 0) or the nearest reflection (determinant < 0).
 void make_orthogonal_2(double* matrix) {
   const double sign = matrix[0] * matrix[3] - matrix[1] * matrix[2] < 0 ? -1.0 : 1.0;
   const double c = matrix[0] + sign * matrix[3], s = matrix[2] - sign * matrix[1];

@@ -29,7 +29,7 @@ void check_star_shape(const Star& s, Index i, int dimension, std::size_t transpo
                        ", the graph has " + std::to_string(dimension));
   if (s.weights.size() != degree || s.logs.size() != degree * d || s.transports.size() != degree * transport_width)
     throw InvalidGraph("star of vertex " + std::to_string(i) + ": weights, logs or transports do not match its " +
-                       std::to_string(degree) + " neighbours in length");
+                       std::to_string(degree) + " neighbors in length");
 }
 
 /// @return the degree
@@ -43,7 +43,7 @@ std::size_t check_vertex(const TangentGraph& graph, Index i) {
   for (std::size_t e = 0; e < s.degree(); ++e) {
     const Index j = s.neighbors[e];
     if (j < 0 || j >= graph.size())
-      throw InvalidGraph(edge_name(i, j) + ": the neighbour is outside [0, " + std::to_string(graph.size()) + ")");
+      throw InvalidGraph(edge_name(i, j) + ": the neighbor is outside [0, " + std::to_string(graph.size()) + ")");
     if (j == i) throw InvalidGraph(edge_name(i, j) + ": self loops are not allowed");
     if (!std::isfinite(s.weights[e])) throw InvalidGraph(edge_name(i, j) + ": the weight is not finite");
     if (!all_finite(s.log(e))) throw InvalidGraph(edge_name(i, j) + ": the edge logarithm is not finite");
@@ -53,20 +53,20 @@ std::size_t check_vertex(const TangentGraph& graph, Index i) {
   return s.degree();
 }
 
-/// Matches edges with those in the other direction; what it needs is kept from vertex to vertex.
+/// Matches edges with their reverse edges. The object keeps its buffers from vertex to vertex.
 class PairCheck {
  public:
   explicit PairCheck(const TangentGraph& graph) : graph_(graph), layout_(graph.transport_layout()) {}
 
-  /// Checks the pairs (i, j) of which i has more neighbours, or as many and the smaller number, so that the time is not
-  /// quadratic in degrees.
-  /// @return how many edges lead from and to i there
+  /// Checks the edges between i and all neighbors j of smaller degree, or of the same degree and larger number. So the time is not
+  /// quadratic in the degrees.
+  /// @return number of edges i -> j and j -> i that were checked
   std::size_t at(Index i) {
     copy(graph_.star(i));
     const std::size_t degree = neighbors_.size();
     by_target_.resize(degree);
     std::iota(by_target_.begin(), by_target_.end(), std::size_t{0});
-    // By place where neighbours are the same: a stable sort without its buffer.
+    // Equal neighbors are sorted by position: a stable sort that needs no buffer.
     std::sort(by_target_.begin(), by_target_.end(), [&](std::size_t a, std::size_t b) {
       return neighbors_[a] != neighbors_[b] ? neighbors_[a] < neighbors_[b] : a < b;
     });
@@ -89,7 +89,8 @@ class PairCheck {
     transports_.assign(star.transports.begin(), star.transports.end());
   }
 
-  /// Every edge i -> j, of these places in the star of i, with an unused edge j -> i of the same weight and inverse transport.
+  /// Matches each edge i -> j with an unused edge j -> i of the same weight and inverse transport.
+  /// @param edges  positions in the star of i
   void match(std::span<const std::size_t> edges, Index i, const Star& to, Index j) {
     used_.assign(to.degree(), 0);
     std::size_t backward = 0;
@@ -118,13 +119,13 @@ class PairCheck {
 
   const TangentGraph& graph_;
   TransportLayout layout_;
-  std::vector<Index> neighbors_;  ///< of i; a star lives until the next one is asked for
-  std::vector<double> weights_, transports_;
+  std::vector<Index> neighbors_;              ///< neighbors of i, copied: the next call of `star` invalidates a star
+  std::vector<double> weights_, transports_;  ///< weights and transports of the edges of i
   std::vector<std::size_t> by_target_;
-  std::vector<std::uint8_t> used_;  ///< edges of j
+  std::vector<std::uint8_t> used_;  ///< whether an edge of j has been matched
 };
 
-/// Names an edge without a reverse one; some must be there.
+/// Throws an error for an edge without a reverse edge. Called only if there is one.
 [[noreturn]] void name_edge_without_reverse(const TangentGraph& graph) {
   for (Index i = 0; i < graph.size(); ++i) {
     const Star star = graph.star(i);
@@ -173,7 +174,7 @@ void validate(const TangentGraph& graph, unsigned threads) {
   try {
     check_edges(graph, threads);
   } catch (const InvalidGraph&) {
-    check_edges(graph, 1);  // names the first one
+    check_edges(graph, 1);  // reports the first violation
     throw;
   }
 }

@@ -9,7 +9,7 @@
 namespace ahm {
 namespace {
 
-/// Mean |e_ij| of each component; 0 without edges.
+/// Mean |e_ij| of each component and of the whole graph; 0 if there are no edges.
 struct MeanLengths {
   std::vector<double> of_component;
   double of_all = 0;
@@ -60,8 +60,8 @@ double diffusion_time(double t_coef, double h) {
   if (!(tau >= 1e-290) || !(tau <= 1e290))
     throw InvalidArgument("diffusion_time_range",
                           "t_coef is " + detail::number(t_coef) +
-                              ": this multiple of the squared mean edge length leaves the range of double precision",
-                          "give a t_coef near 1 and the graph a length_unit near its edge length");
+                              ": t_coef times the squared mean edge length is outside the range of double precision",
+                          "use a t_coef near 1, and set the graph's length_unit near its edge length");
   return tau;
 }
 

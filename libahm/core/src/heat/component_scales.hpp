@@ -1,6 +1,6 @@
 /// \file
-/// The length scale of each connected component: heat does not cross between components, so each one diffuses for a time
-/// of its own, and its numbers do not depend on what else is in the graph.
+/// The length scale of each connected component. Heat does not cross between components, so each one has its own diffusion time, and
+/// its results do not depend on the others.
 #pragma once
 
 #include <vector>
@@ -10,10 +10,10 @@
 
 namespace ahm {
 
-/// Per component: h_c, its mean edge length in graph units, and its number of vertices.
+/// Mean edge length h_c (graph units) and number of vertices of each component.
 ///
-/// The graph tells h_c (`component_edge_length`); else that of a graph of one component is `mean_edge_length`, which is shared out
-/// to several in the ratio of their mean |e_ij|.
+/// h_c is the graph's `component_edge_length` if it has one. Otherwise it is `mean_edge_length`, scaled for several components in the
+/// ratio of their mean |e_ij|.
 struct ComponentScales {
   explicit ComponentScales(const TangentGraph& graph);
 
@@ -29,7 +29,7 @@ struct ComponentScales {
 /// @throws InvalidArgument (t_coef; a tau out of range)
 std::vector<double> diffusion_times(const ComponentScales& scales, double t_coef);
 
-/// t_coef h^2, checked. @throws InvalidArgument
+/// Computes t_coef h^2. @throws InvalidArgument (t_coef; a tau out of range)
 double diffusion_time(double t_coef, double h);
 
 }  // namespace ahm

@@ -19,7 +19,8 @@
 namespace ahm {
 namespace {
 
-/// Column i of the upper triangles: the edges of star i that lead to smaller vertices, then the diagonal.
+/// Assembles the upper triangles of A and B column by column. Column i has an entry for each edge of star i to a smaller vertex, and
+/// the diagonal.
 class ColumnWriter {
  public:
   ColumnWriter(const TangentGraph& graph, std::span<const double> tau, double scaling)
@@ -58,7 +59,7 @@ class ColumnWriter {
   AssembledOperators take() { return {std::move(A_), std::move(B_)}; }
 
  private:
-  /// Sums parallel edges: columns_ the neighbours j < i ascending, scalar_ the entries A_ji, blocks_ the entries B_ji.
+  /// Sums parallel edges. Sets columns_ to the neighbors j < i, ascending, scalar_ to the entries A_ji and blocks_ to the entries B_ji.
   void gather(Index i, const Star& star) {
     order_.clear();
     for (std::size_t e = 0; e < star.degree(); ++e)
@@ -104,11 +105,11 @@ class ColumnWriter {
 
   int d_;
   TransportLayout layout_;
-  bool complex_;  ///< B is n x n complex, not n d x n d real: the matrices differ in kind
+  bool complex_;  ///< whether B is n x n complex; otherwise it is n d x n d real
   std::span<const double> tau_;
   double scaling_;
   SparseUpper A_, B_;
-  std::vector<std::pair<Index, std::size_t>> order_;  ///< edges, by where they lead
+  std::vector<std::pair<Index, std::size_t>> order_;  ///< (neighbor, edge), sorted
   std::vector<Offset> columns_;
   std::vector<double> scalar_, blocks_;
 };
@@ -131,16 +132,17 @@ double mean_mass(const TangentGraph& graph) {
   return mean;
 }
 
-/// Heat may be lost as if masses were greater by this share, which bends distances by half of it and flat graphs not at all.
+/// Largest relative loss of heat. It acts like masses that are larger by this factor: distances change by half of it, and on flat
+/// graphs not at all.
 constexpr double most_loss = 1e-6;
 
-/// A pattern's analysis for A and for B, which have the same one where B is complex.
+/// The symbolic analyses of A and B. A complex B has the pattern of A and shares its analysis.
 class Analysis {
  public:
   Analysis(const AssembledOperators& matrices, const FactorOptions& options) : scalar_(matrices.A, options.ordering) {}
 
   const SymbolicCholesky& of_A() const { return scalar_; }
-  /// @param dimension  of the graph
+  /// @param dimension  dimension of the graph
   const SymbolicCholesky& of_B(const SparseUpper& B, int dimension) {
     if (!B.is_complex && !blocks_) blocks_.emplace(B, scalar_, dimension);
     return blocks_ ? *blocks_ : scalar_;
@@ -151,7 +153,7 @@ class Analysis {
   std::optional<SymbolicCholesky> blocks_;
 };
 
-/// c m
+/// The masses times c.
 std::vector<double> scaled_masses(const TangentGraph& graph, double scaling) {
   std::vector<double> masses(static_cast<std::size_t>(graph.size()));
   for (Index i = 0; i < graph.size(); ++i) masses[i] = scaling * graph.mass(i);
@@ -164,12 +166,13 @@ double farthest_from_one(std::span<const double> values) {
   return worst;
 }
 
-/// Both checks by one solve. @param masses  scaled
+/// Checks the residual and the conservation of heat with one solve.
+/// @param masses  masses times c
 void check_A(const CholeskyFactor& A, const SparseUpper& matrix, std::vector<double> masses, unsigned threads) {
   check_conservation(farthest_from_one(A.checked_solve(matrix, std::move(masses), name_A, threads)));
 }
 
-/// A and B as two objects that solve: CholeskyFactor or ConjugateGradient.
+/// A and B with one solver each: CholeskyFactor or ConjugateGradient.
 template <class Solver>
 class SystemOf final : public HeatSystem {
  public:
@@ -188,7 +191,7 @@ class SystemOf final : public HeatSystem {
   std::optional<Solver> A, B;
 };
 
-/// A factored, and what is left to do until it is.
+/// Factors A at once, and B on the first solve with it. Keeps the matrices until then.
 class HeatFirstSystem final : public HeatSystem {
  public:
   HeatFirstSystem(const TangentGraph& graph, std::vector<double> tau, const FactorOptions& options)
@@ -227,7 +230,7 @@ class HeatFirstSystem final : public HeatSystem {
   mutable std::optional<CholeskyFactor> B_;
 };
 
-/// The checks and the assembly that every system begins with.
+/// Makes a system, checks the masses and assembles the matrices.
 template <class System>
 std::pair<std::unique_ptr<System>, AssembledOperators> begin(const TangentGraph& graph, std::vector<double> tau,
                                                              const FactorOptions& options) {
@@ -256,9 +259,9 @@ double conservation_residual(const HeatSystem& system, const TangentGraph& graph
 void check_conservation(double lost) {
   if (!(lost <= most_loss))
     throw NotPositiveDefinite("heat_lost",
-                              "the diffusion loses heat (" + detail::number(lost) +
-                                  " of it): its time is too long, or the sizes of faces and edges differ too much",
-                              "give a smaller t_coef");
+                              "the diffusion loses heat (relative loss " + detail::number(lost) +
+                                  "): its time is too long, or the sizes of faces and edges differ too much",
+                              "use a smaller t_coef");
 }
 
 void check_heat_options(const TangentGraph& graph, const HeatOptions& options) {
@@ -290,7 +293,7 @@ std::unique_ptr<const HeatSystem> factored_system(const TangentGraph& graph, std
   system->statistics_to_fill().analyze_seconds = stopwatch.lap();
   options.progress.step("factor", 0.0);
 
-  // Threads share each of two large factors, or take one of two small ones.
+  // Large factors: one after the other, each on all threads. Small factors: at the same time, one thread each.
   const bool in_turn = of_B.is_shared();
   const unsigned each = in_turn ? options.threads : 1;
   detail::run_both(

@@ -19,30 +19,32 @@ struct AssembledOperators {
 };
 
 /// Assembles both operators in one pass over the graph's stars; parallel edges are summed. Time and memory O(nnz).
-/// @param tau  of each vertex, the same at both ends of an edge
+/// @param tau      diffusion time of each vertex, equal at both ends of an edge
+/// @param scaling  the constant c
 AssembledOperators assemble(const TangentGraph& graph, std::span<const double> tau, double scaling);
 
-/// Checks the options, and the graph if they say so.
+/// Checks the options, and the graph if the options request it.
 /// @throws InvalidGraph, InvalidArgument
 void check_heat_options(const TangentGraph& graph, const HeatOptions& options);
 /// Checks `t_coef`, and the graph if the options request it. @throws InvalidGraph, InvalidArgument
 void check_diffusion(const TangentGraph& graph, const FactorOptions& options);
 
-/// A and B, scaled by c, ready to solve with. Immutable: `solve_A` and `solve_B` may be called from many threads at once.
+/// Solves with A and B, both scaled by c. Immutable: `solve_A` and `solve_B` may be called from many threads at once.
 class HeatSystem {
  public:
   virtual ~HeatSystem() = default;
 
-  /// X <- (c A)^-1 X, column major; the same bits on any number of threads.
+  /// X <- (c A)^-1 X, column major. The result has the same bits for any number of threads.
   virtual void solve_A(std::span<double> X, Offset columns, unsigned threads = 1) const = 0;
   /// X <- (c B)^-1 X, column major; complex numbers as interleaved pairs.
   virtual void solve_B(std::span<double> X, Offset columns, unsigned threads = 1) const = 0;
 
-  /// What was not checked when the system was made. @throws NotPositiveDefinite
+  /// Runs the checks that the constructor postponed. @throws NotPositiveDefinite
   virtual void check() const {}
 
-  /// Of each vertex.
+  /// Diffusion time of each vertex, in squared graph units.
   std::span<const double> tau() const noexcept { return tau_; }
+  /// The constant c.
   double scaling() const noexcept { return scaling_; }
   const FactorStatistics& statistics() const noexcept { return statistics_; }
 
@@ -54,35 +56,35 @@ class HeatSystem {
   FactorStatistics statistics_;
 };
 
-/// The power of two that brings the mean mass to order one. A power of two, so that scaled models give the same bits.
+/// The constant c: a power of two that brings the mean mass to order one. So scaled models give the same bits.
 /// @throws InvalidGraph
 double mass_scaling(double mean_mass);
 
-/// How far A^-1 m is from 1 at the first `own` vertices. Constants are in the kernel of L, so A 1 = m: it tells what
-/// conditioning leaves of the digits.
+/// Largest difference of A^-1 m from 1 at the first `own` vertices. Constants are in the kernel of L, so A 1 = m. The difference
+/// measures how many digits are lost to conditioning.
 double conservation_residual(const HeatSystem& system, const TangentGraph& graph, Index own);
-/// @throws NotPositiveDefinite where that is too much
+/// Checks a `conservation_residual`. @throws NotPositiveDefinite (it is too large)
 void check_conservation(double lost);
 
-/// By Cholesky factors.
-/// @param tau  of each vertex, the same at both ends of an edge
+/// A system that solves by Cholesky factors.
+/// @param tau  diffusion time of each vertex, equal at both ends of an edge
 /// @throws as `HeatOperators`
 std::unique_ptr<const HeatSystem> factored_system(const TangentGraph& graph, std::vector<double> tau,
                                                   const FactorOptions& options);
 
-/// The same, but A's factor is checked, and B factored, when B is first solved with: whoever goes by what A tells and never solves
-/// with B calls `check`. Its statistics are empty.
-/// @throws as `HeatOperators`; and so does the first `solve_B`
+/// As `factored_system`, but the first `solve_B` checks the factor of A and factors B. If the caller never solves with B, it must call
+/// `check` before it uses results of A. The statistics are empty.
+/// @throws as `HeatOperators`; the first `solve_B` throws the same errors
 std::unique_ptr<const HeatSystem> heat_first_system(const TangentGraph& graph, std::vector<double> tau,
                                                     const FactorOptions& options);
 
-/// By conjugate gradients; block graphs only. Errors are relative to the largest value of a solution, which is enough for
-/// the thin bands of a march.
+/// A system that solves by conjugate gradients, for block graphs only. Errors are relative to the largest value of a solution, which is
+/// accurate enough for the thin bands of a march.
 /// @throws as `HeatOperators`
 std::unique_ptr<const HeatSystem> iterative_system(const TangentGraph& graph, std::vector<double> tau,
                                                    const FactorOptions& options);
 
-/// Makes operators that solve with a system: factors, conjugate gradients, or solvers of other libraries.
+/// Makes operators from a system: Cholesky factors, conjugate gradients, or solvers of other libraries.
 struct HeatOperatorsAccess {
   static HeatOperators make(std::unique_ptr<const HeatSystem> system, const TangentGraph& graph, Components components);
 };

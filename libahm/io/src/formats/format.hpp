@@ -1,8 +1,8 @@
 /// \file
-/// A file format: its extensions, and who reads and writes it.
+/// A file format: its extensions and the functions that read and write it.
 ///
-/// A format NAME is a file src/formats/NAME.cpp that defines `Format NAME_format()`, and a word in the list of formats
-/// in io/CMakeLists.txt. `read`, `write`, `check_writable`, `write_textured`, `extensions` and their messages follow.
+/// To add a format NAME, write src/formats/NAME.cpp with a function `Format NAME_format()`, and add NAME to the list of formats in
+/// io/CMakeLists.txt. `read`, `write`, `check_writable`, `write_textured`, `extensions` and their messages then include it.
 #pragma once
 
 #include <filesystem>
@@ -18,31 +18,31 @@
 
 namespace ahm::io {
 
-/// What cannot be done with a format stays null.
+/// Unsupported operations are null.
 struct Format {
-  std::vector<std::string> extensions;  ///< lower case, with their dot
-  std::vector<std::string> signatures =
-      {};  ///< a file without a name is of this format where it begins with one of these
+  std::vector<std::string> extensions;       ///< lower case, with the dot
+  std::vector<std::string> signatures = {};  ///< first bytes of files, to identify input without a name
   Geometry (*read)(const Input& in) = nullptr;
-  /// What it reads beside a file of its own; null: nothing.
+  /// Other files that a file refers to; null: none.
   std::vector<std::filesystem::path> (*files_beside)(const Input& in) = nullptr;
-  /// For `PointStream`: where points are, from a file's beginning; nullopt: nowhere in particular (text, compressed).
+  /// For `PointStream`: the layout of the points, from the beginning of a file; nullopt if they have no fixed size (text,
+  /// compressed).
   std::optional<PointRecords> (*records)(const Input& in) = nullptr;
-  /// Of such files: hands over all points, and says whether they have normals.
+  /// For files without fixed-size records: passes every point to `take`. @return whether the points have normals
   bool (*take_points)(const ByteStream& file, const TakePoint& take) = nullptr;
   void (*write)(AtomicFile& file, const Table& table) = nullptr;
-  bool for_viewers = true;  ///< `write` is given the columns that are for viewers only, too
+  bool for_viewers = true;  ///< `write` receives columns for viewers, too
   void (*write_textured)(const std::filesystem::path& path, std::span<const MeshPart> parts) = nullptr;
-  std::string missing = {};  ///< a library this build is without, and the functions above therefore null
+  std::string missing = {};  ///< library that this build lacks, so that the functions above are null
 };
 
-/// All formats, in the order in which people should see them.
+/// All formats, in the order in which they are shown to users.
 const std::vector<Format>& formats();
-/// The format of an extension; null when there is none.
+/// The format of an extension; null if the extension is unknown.
 const Format* find_format(const std::string& extension);
-/// The format of bytes that begin like its own; null when there is none.
+/// The format with a signature that `bytes` begins with; null if there is none.
 const Format* recognized_format(std::string_view bytes);
-/// ".off, .obj and .stl"
+/// The extensions as a list in English: ".off, .obj and .stl".
 std::string list_of(const std::vector<std::string>& extensions, const std::string& last = "and");
 
 }  // namespace ahm::io

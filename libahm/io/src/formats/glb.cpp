@@ -16,11 +16,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Numbers of the glTF 2.0 specification.
+// Constants of the glTF 2.0 specification.
 constexpr std::uint32_t glb_magic = 0x46546C67, glb_version = 2, json_chunk = 0x4E4F534A, binary_chunk = 0x004E4942;
 constexpr int float32 = 5126, uint32 = 5125, array_buffer = 34962, element_array_buffer = 34963, clamp_to_edge = 33071;
 
-/// Models smaller than this lose digits in single precision.
+/// Smaller models lose digits in single precision.
 constexpr double least_size = 1e-30;
 
 Vec3 middle_of(std::span<const MeshPart> parts) {
@@ -48,7 +48,7 @@ class GlbFile {
   void add(const MeshPart& part) {
     const PartVertices vertices = vertices_of(part);
     const bool has_texture = !vertices.textures.empty();
-    // One vertex per point, or per pair of texture coordinates, which differ along seams.
+    // One vertex per point, or per distinct pair of texture coordinates: a point on a seam has several pairs.
     std::vector<Index> point_of = vertices.texture_point, own = vertices.points;
     if (!has_texture)
       for (std::size_t k = 0; k < own.size(); ++k) point_of.push_back(static_cast<Index>(k));
@@ -64,7 +64,7 @@ class GlbFile {
     if (!part.normals.empty())
       attributes["NORMAL"] = add_floats(
           "VEC3", 3, point_of.size(), [&](std::size_t k, std::size_t c) { return part.normals[own[point_of[k]]][c]; });
-    if (has_texture)  // glTF counts v from the top
+    if (has_texture)  // in glTF, v = 0 is at the top
       attributes["TEXCOORD_0"] = add_floats("VEC2", 2, point_of.size(), [&](std::size_t k, std::size_t c) {
         return c == 0 ? vertices.textures[2 * k] : 1 - vertices.textures[2 * k + 1];
       });
@@ -110,7 +110,7 @@ class GlbFile {
     return count(list) - 1;
   }
 
-  /// What was appended since `begin`, padded to whole words, as a view of the buffer.
+  /// Adds a view of the bytes since `begin`, and pads the buffer to a multiple of four bytes. @return its index
   int add_view(std::size_t begin, int target) {
     Json view = {{"buffer", 0}, {"byteOffset", begin}, {"byteLength", bytes_.size() - begin}};
     if (target != 0) view["target"] = target;
@@ -130,7 +130,7 @@ class GlbFile {
     return add_accessor(begin, array_buffer, {{"componentType", float32}, {"count", size}, {"type", type}});
   }
 
-  /// With bounds, which the format asks for.
+  /// Adds the positions, with the bounds that glTF requires. @return the index of the accessor
   int add_positions(const MeshPart& part, const std::vector<Index>& own, const std::vector<Index>& point_of) {
     double largest = 0;
     std::array<float, 3> low, high;
@@ -144,8 +144,8 @@ class GlbFile {
       return x;
     });
     if (largest > std::numeric_limits<float>::max() || (largest > 0 && largest < least_size))
-      throw InvalidArgument("a .glb file holds single precision, which a length of " + detail::number(largest) +
-                            " does not fit; write .obj");
+      throw InvalidArgument("a .glb file has single precision, but the mesh has a length of " +
+                            detail::number(largest) + "; write .obj");
     json_["accessors"][accessor]["min"] = low;
     json_["accessors"][accessor]["max"] = high;
     return accessor;

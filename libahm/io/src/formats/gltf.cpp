@@ -1,5 +1,5 @@
-// glTF is read here and not by a library: tinygltf reads the JSON, which nlohmann/json does for both, and leaves to its user
-// what is most of the work and of the danger, accessors within buffers; Assimp keeps single precision and adds 10 MB.
+// This reader does not use a library. tinygltf reads only the JSON (with nlohmann/json, as here), and does not decode or check
+// accessors, which is most of the work. Assimp has single precision and adds 10 MB.
 #include "formats/gltf.hpp"
 
 #include <algorithm>
@@ -32,7 +32,7 @@ class GltfReader {
   Geometry read() {
     g_.format = in_.bytes.starts_with("glTF") ? "glTF binary" : "glTF text";
     for (const GltfPlacement& placed : placed_meshes(in_, file_)) read_mesh(placed);
-    if (g_.points.empty()) fail(in_, "it holds no vertex");
+    if (g_.points.empty()) fail(in_, "it contains no vertex");
     if (lines_ > 0) g_.warnings.push_back({"lines_ignored", {static_cast<double>(lines_)}, {}});
     if (has_colors_ && lights_.size() == g_.points.size()) keep_colors();
     if (!g_.face_begin.empty()) join_seams();
@@ -46,14 +46,15 @@ class GltfReader {
     if (found == mesh.end() || !found->is_array())
       fail(in_, "mesh " + std::to_string(placed.mesh) + " has no primitives");
     for (const Json& primitive : *found) {
-      if (!primitive.is_object()) fail(in_, "mesh " + std::to_string(placed.mesh) + " has a primitive that is none");
+      if (!primitive.is_object())
+        fail(in_, "mesh " + std::to_string(placed.mesh) + " has a primitive that is not an object");
       read_primitive(primitive, placed.columns);
     }
   }
 
   void read_primitive(const Json& primitive, const std::array<Vec3, 4>& columns) {
     const std::uint64_t mode = file_.whole(primitive, "mode", triangles);
-    if (mode > fan) fail(in_, "a primitive has the mode " + std::to_string(mode) + "; 0 to 6 are known");
+    if (mode > fan) fail(in_, "a primitive has the mode " + std::to_string(mode) + "; modes 0 to 6 are supported");
     if (mode >= lines && mode <= line_strip) {
       ++lines_;
       return;
@@ -72,11 +73,11 @@ class GltfReader {
   void refuse_compression(const Json& primitive) const {
     const auto extensions = primitive.find("extensions");
     if (extensions != primitive.end() && extensions->is_object() && extensions->contains("KHR_draco_mesh_compression"))
-      fail(in_, "its meshes are compressed (Draco), which is not read; save it without compression");
+      fail(in_, "its meshes are compressed (Draco), which is not supported; save it without compression");
     const auto required = file_.root().find("extensionsRequired");
     if (required != file_.root().end() &&
         std::ranges::find(*required, Json("EXT_meshopt_compression")) != required->end())
-      fail(in_, "its meshes are compressed (meshopt), which is not read; save it without compression");
+      fail(in_, "its meshes are compressed (meshopt), which is not supported; save it without compression");
   }
 
   GltfArray vectors(std::uint64_t accessor, std::size_t least_width) {
@@ -87,7 +88,7 @@ class GltfReader {
     return array;
   }
 
-  /// A mesh may be placed any number of times, so that the size of the file bounds nothing.
+  /// Checks the memory: nodes may place the same mesh any number of times, so the file size does not limit the number of points.
   void check_size(std::uint64_t more) const {
     constexpr std::uint64_t bytes_per_point = 128;
     check_vertex_count(in_, g_.points.size() + more);
@@ -109,7 +110,7 @@ class GltfReader {
     return array.count;
   }
 
-  /// That of the primitive's material, linear light; white where nothing is said.
+  /// Base color of the primitive's material, linear; white by default.
   Vec3 base_color(const Json& primitive) const {
     const std::uint64_t number = file_.whole(primitive, "material", none);
     if (number == none) return white;
@@ -120,7 +121,7 @@ class GltfReader {
     return factor.empty() ? white : Vec3{factor[0], factor[1], factor[2]};
   }
 
-  /// Those of the vertices times that of their material.
+  /// Adds the colors of the vertices, multiplied by the base color of their material.
   void add_lights(std::uint64_t accessor, const Vec3& base, std::size_t first, std::size_t count) {
     lights_.resize(first + count, base);
     has_colors_ = has_colors_ || base != white;
@@ -139,7 +140,7 @@ class GltfReader {
       auto& color = g_.colors.emplace_back();
       for (std::size_t c = 0; c < 3; ++c)
         color[c] = static_cast<std::uint8_t>(
-            std::lround(255 * detail::tone_of(light[c] > 0 ? std::min(light[c], 1.0) : 0.0)));  // of NaN: black
+            std::lround(255 * detail::tone_of(light[c] > 0 ? std::min(light[c], 1.0) : 0.0)));  // NaN becomes black
     }
   }
 
@@ -164,13 +165,13 @@ class GltfReader {
            0;
   }
 
-  /// Turned over where their placement mirrors them, so that their fronts stay outside.
+  /// @param turned  whether the placement mirrors the faces: they are reversed, so that their front sides stay outside
   void add_faces(std::uint64_t mode, const std::vector<std::size_t>& corners, std::size_t first, bool turned) {
     if (mode == triangles && corners.size() % 3 != 0)
       fail(in_, "a primitive of triangles has " + std::to_string(corners.size()) + " corners");
     if (g_.face_begin.empty()) g_.face_begin.push_back(0);
     const auto add = [&](std::size_t a, std::size_t b, std::size_t c) {
-      if (mode == strip && (a == b || b == c || c == a)) return;  // a step to the next part of the strip
+      if (mode == strip && (a == b || b == c || c == a)) return;  // connects two parts of the strip
       if (turned) std::swap(b, c);
       for (const std::size_t corner : {a, b, c}) g_.face_vertices.push_back(static_cast<Index>(first + corner));
       g_.face_begin.push_back(static_cast<Offset>(g_.face_vertices.size()));
@@ -185,7 +186,7 @@ class GltfReader {
     }
   }
 
-  /// glTF has a vertex for every texture coordinate and normal of a point: the surface is one where positions are equal.
+  /// Merges vertices at equal positions: glTF has a separate vertex for every texture coordinate and normal of a point.
   void join_seams() {
     const detail::Welded welded = detail::weld(g_.points);
     for (std::size_t k = 0; k < welded.first.size(); ++k) {
@@ -200,7 +201,7 @@ class GltfReader {
   const Input& in_;
   GltfFile file_;
   Geometry g_;
-  std::vector<Vec3> lights_;  ///< linear
+  std::vector<Vec3> lights_;  ///< colors, linear
   bool has_colors_ = false;
   std::size_t lines_ = 0;
 };

@@ -1,5 +1,5 @@
 /// \file
-/// glTF 2.0, as text or binary.
+/// Reader of glTF 2.0 files, text or binary.
 #pragma once
 
 #include "ahm/io/geometry.hpp"

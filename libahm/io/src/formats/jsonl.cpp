@@ -1,4 +1,4 @@
-// JSON lines are written here and not by nlohmann/json: a million rows are a million objects of the same names.
+// JSON lines are not written with nlohmann/json, which would build an object with all names for every row.
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -8,7 +8,7 @@
 namespace ahm::io {
 namespace {
 
-/// Numbers that JSON has; null for the others.
+/// Appends a number; null for NaN and infinity, which JSON cannot represent.
 template <class T>
 void append_number(std::string& text, T value) {
   if constexpr (!std::is_same_v<T, double>)

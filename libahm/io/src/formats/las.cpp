@@ -1,5 +1,5 @@
-// LAS is read here and not by a library: Debian 12 has neither PDAL nor LASlib nor a liblas. Its points are records of
-// fixed size behind a header of fixed layout (ASPRS LAS specification 1.4 R15), checked against the size of the file.
+// This reader does not use a library: Debian 12 has no PDAL, LASlib or liblas. A LAS file is a header of fixed layout and point
+// records of fixed size (ASPRS LAS specification 1.4 R15). The reader checks both against the file size.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,9 +13,9 @@
 namespace ahm::io {
 namespace {
 
-/// A point data record format: its least size, and where things stand in it.
+/// A point data record format: its minimum size, and the offsets of classification and color, bytes.
 struct Record {
-  std::size_t size, classification, color;  ///< color 0: none
+  std::size_t size, classification, color;  ///< color 0: no color
 };
 
 constexpr std::array<Record, 11> records = {{{20, 15, 0},
@@ -31,7 +31,7 @@ constexpr std::array<Record, 11> records = {{{20, 15, 0},
                                              {67, 16, 30}}};
 
 constexpr std::size_t intensity_at = 12;
-constexpr unsigned first_of_whole_classes = 6;  ///< before, three bits of the class are flags
+constexpr unsigned first_of_whole_classes = 6;  ///< in lower formats, the upper three bits of the class are flags
 
 struct LasHeader {
   unsigned minor = 0, format = 0;
@@ -47,8 +47,9 @@ LasHeader parse_fields(const Input& in) {
   LasHeader header;
   header.minor = load_at<std::uint8_t>(in.bytes, 25);
   if (major != 1 || header.minor > 4)
-    fail_at_byte(in, 24,
-                 "LAS " + std::to_string(major) + "." + std::to_string(header.minor) + " is not known; 1.0 to 1.4 are");
+    fail_at_byte(
+        in, 24,
+        "LAS " + std::to_string(major) + "." + std::to_string(header.minor) + " is not supported; 1.0 to 1.4 are");
   const std::size_t size = load_at<std::uint16_t>(in.bytes, 94);
   if (size < header_sizes[header.minor])
     fail_at_byte(
@@ -67,7 +68,7 @@ LasHeader parse_fields(const Input& in) {
     if (header.points != 0 && header.points != all)
       fail_at_byte(
           in, 107,
-          "the header tells two numbers of points: " + std::to_string(header.points) + " and " + std::to_string(all));
+          "the header has two numbers of points: " + std::to_string(header.points) + " and " + std::to_string(all));
     header.points = all;
   }
   for (std::size_t c = 0; c < 3; ++c) {
@@ -83,12 +84,12 @@ LasHeader parse_fields(const Input& in) {
 
 LasHeader parse_header(const Input& in) {
   const LasHeader header = parse_fields(in);
-  constexpr unsigned compressed = 0xC0;  // LASzip marks its files so
+  constexpr unsigned compressed = 0xC0;  // LASzip sets these bits
   if ((header.format & compressed) != 0)
     fail_at_byte(in, 104,
                  "the points are compressed (LAZ); convert the file to .las with laszip, las2las or pdal translate");
   if (header.format >= records.size())
-    fail_at_byte(in, 104, "point format " + std::to_string(header.format) + " is not known; 0 to 10 are");
+    fail_at_byte(in, 104, "point format " + std::to_string(header.format) + " is not supported; 0 to 10 are");
   if (header.stride < records[header.format].size)
     fail_at_byte(in, 105,
                  "records of " + std::to_string(header.stride) + " bytes are too small for point format " +
@@ -103,7 +104,7 @@ LasHeader parse_header(const Input& in) {
   return header;
 }
 
-/// What there is of colors; writers that have none leave zeros.
+/// Reads the colors, unless all are zero: writers without colors store zeros.
 void read_colors(const Input& in, const LasHeader& header, std::size_t at, Geometry& g) {
   std::vector<Vec3> values(header.points);
   bool any = false;

@@ -1,7 +1,6 @@
-// OBJ is read here and not by a library: CGAL's reader takes index 0 as the next vertex, one number behind the last
-// vertex as valid, "f 1<tab>2<tab>3" as a face with one corner, stops silently at a corner it cannot read, and refuses
-// `l` lines; tinyobjloader reads "1,5" as 1, 1e400 as infinity, and 0.3 one digit off; Assimp and VTK keep single
-// precision.
+// This reader does not use a library. CGAL's reader accepts index 0 and an index one past the last vertex, reads
+// "f 1<tab>2<tab>3" as a face with one corner, stops silently at an invalid corner, and rejects `l` lines. tinyobjloader reads
+// "1,5" as 1, 1e400 as infinity, and 0.3 with an error in the last digit. Assimp and VTK have single precision.
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -15,7 +14,7 @@
 namespace ahm::io {
 namespace {
 
-/// A statement may run over several lines that end with a backslash.
+/// Reads statements. A backslash at the end of a line continues a statement on the next line.
 class Statements {
  public:
   explicit Statements(std::string_view text) : lines_(text) {}
@@ -45,7 +44,7 @@ class Statements {
   std::int64_t number_ = 0;
 };
 
-/// A corner "v", "v/vt", "v//vn" or "v/vt/vn"; 1-based, 0 where absent. Relative numbers are made absolute.
+/// A corner "v", "v/vt", "v//vn" or "v/vt/vn". Numbers are absolute and 1-based; 0 if absent.
 struct Corner {
   std::int64_t vertex = 0;
   std::int64_t normal = 0;
@@ -58,7 +57,7 @@ class ObjReader {
   Geometry read() {
     g_.format = "OBJ";
     while (statements_.next()) read_statement();
-    if (g_.points.empty()) fail(in_, "the file holds no vertex ('v x y z')");
+    if (g_.points.empty()) fail(in_, "the file contains no vertex ('v x y z')");
     if (largest_ > g_.points.size()) {
       fail_at_line(in_, largest_line_,
                    "a face has vertex number " + std::to_string(largest_) + ", but the file has only " +
@@ -88,12 +87,12 @@ class ObjReader {
     }
   }
 
-  /// Counts a statement of an extension of the format. What is no word at all is damage.
+  /// Ignores a statement of an extension of the format, and counts it. Fails if the keyword is not a word.
   void ignore(std::string_view keyword) {
     const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
     if (!letter(keyword.front()) ||
         !std::ranges::all_of(keyword, [&](char c) { return letter(c) || (c >= '0' && c <= '9'); }))
-      fail_at_line(in_, statements_.line(), in_quotes(keyword) + " is no OBJ keyword; the file is damaged");
+      fail_at_line(in_, statements_.line(), in_quotes(keyword) + " is not an OBJ keyword; the file is damaged");
     constexpr std::size_t most_named = 5;
     ++ignored_;
     if (named_.size() == most_named || std::ranges::find(named_, keyword) != named_.end()) return;
@@ -101,7 +100,7 @@ class ObjReader {
     ignored_names_ += (ignored_names_.empty() ? "" : ", ") + in_quotes(keyword);
   }
 
-  /// Behind x, y, z: a weight, or red, green, blue.
+  /// Reads the numbers after x, y, z: a weight, or red, green, blue.
   void read_extras(std::string_view rest) {
     constexpr double none = std::numeric_limits<double>::quiet_NaN();
     Vec3 color{none, none, none};
@@ -142,8 +141,8 @@ class ObjReader {
     }
     if (corners < 3) {
       fail_at_line(in_, statements_.line(),
-                   "face " + std::to_string(g_.face_count()) + " has only " + std::to_string(corners) +
-                       " corners; the file may be cut short");
+                   "face " + std::to_string(g_.face_count()) + " must have at least 3 corners, found " +
+                       std::to_string(corners) + "; the file may be cut short");
     }
     g_.face_begin.push_back(static_cast<Offset>(g_.face_vertices.size()));
   }
@@ -155,10 +154,10 @@ class ObjReader {
       part = rest.substr(0, rest.find('/'));
       rest.remove_prefix(std::min(rest.size(), part.size() + 1));
     }
-    if (!rest.empty()) fail_at_line(in_, statements_.line(), in_quotes(word) + " is no corner of a face");
+    if (!rest.empty()) fail_at_line(in_, statements_.line(), in_quotes(word) + " is not a corner of a face");
     Corner corner{absolute(parts[0], g_.points.size(), word), 0};
     if (!parts[1].empty() && !to_whole(parts[1]))
-      fail_at_line(in_, statements_.line(), in_quotes(word) + " is no corner of a face");
+      fail_at_line(in_, statements_.line(), in_quotes(word) + " is not a corner of a face");
     if (!parts[2].empty()) corner.normal = absolute(parts[2], normals_.size(), word);
     if (static_cast<std::uint64_t>(corner.vertex) > largest_) {
       largest_ = static_cast<std::uint64_t>(corner.vertex);
@@ -167,19 +166,19 @@ class ObjReader {
     return corner;
   }
 
-  /// 1-based number; -1 is the last of the `so_far` read.
+  /// The absolute, 1-based number; -1 refers to the last of the `so_far` elements read.
   std::int64_t absolute(std::string_view part, std::size_t so_far, std::string_view word) const {
     const std::optional<std::int64_t> number = to_whole(part);
     const auto last = static_cast<std::int64_t>(so_far);
     if (!number || *number == 0 || *number < -last || *number > std::numeric_limits<Index>::max()) {
       fail_at_line(in_, statements_.line(),
-                   in_quotes(word) + " is no corner of a face: numbers start at 1, or count back from -1 to -" +
+                   in_quotes(word) + " is not a corner of a face: numbers start at 1, or count back from -1 to -" +
                        std::to_string(last));
     }
     return *number < 0 ? last + 1 + *number : *number;
   }
 
-  /// Normals belong to corners; they are kept only when each corner has the number of its vertex.
+  /// OBJ files have normals per corner. They are kept only if every corner has equal numbers of vertex and normal.
   void finish_normals() {
     if (normals_.empty()) return;
     if (normals_match_ && !g_.face_begin.empty() && normals_.size() == g_.points.size()) {
@@ -206,7 +205,7 @@ class ObjReader {
   std::vector<Vec3> normals_;
   bool normals_match_ = true;
   bool extras_ = false;
-  std::vector<Vec3> extra_;  ///< three more numbers of the first vertices; of all, when they may be colors
+  std::vector<Vec3> extra_;  ///< three numbers after x, y, z, up to the first vertex without them
   std::size_t ignored_ = 0;
   std::vector<std::string> named_;
   std::string ignored_names_;

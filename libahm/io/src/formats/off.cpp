@@ -1,6 +1,6 @@
-// OFF is read here and not by a library: CGAL's scanner, the one in Debian 12 that keeps doubles and polygons, parses
-// each vertex with the process's global C++ locale ("1.5" becomes 1 where decimals have commas), takes "0 0 1,5" as 0 0
-// 1, cannot read "nan", and believes the counts of the header.
+// This reader does not use a library. CGAL's scanner, the only one in Debian 12 that keeps doubles and polygons, parses vertices in
+// the process's global C++ locale ("1.5" becomes 1 where decimals have commas), reads "0 0 1,5" as 0 0 1, cannot read "nan", and
+// does not check the counts of the header.
 #include <algorithm>
 #include <array>
 #include <optional>
@@ -13,7 +13,7 @@
 namespace ahm::io {
 namespace {
 
-/// Words across lines; comments are skipped.
+/// Reads words across lines and skips comments.
 class Words {
  public:
   Words(const Input& in, std::string_view text) : in_(in), lines_(text) {}
@@ -26,7 +26,7 @@ class Words {
     }
   }
 
-  /// The words that are left on the line.
+  /// The remaining words of the line.
   std::string_view rest_of_line() noexcept { return std::exchange(rest_, {}); }
   bool at_end() { return rest_.empty() && !lines_.next_filled('#'); }
   std::int64_t line() const noexcept { return lines_.number(); }
@@ -45,7 +45,7 @@ struct OffHeader {
   std::uint64_t faces = 0;
 };
 
-/// Reads the keyword [ST][C][N]OFF in any case of its letters; nOFF and 4OFF, in other dimensions, are refused.
+/// Parses the keyword [ST][C][N]OFF in any case. Rejects nOFF and 4OFF, which have other dimensions.
 void parse_keyword(const Input& in, std::int64_t line, std::string_view word, OffHeader& header) {
   const std::string_view ending = word.substr(word.size() - std::min<std::size_t>(word.size(), 3));
   const std::string_view prefix = word.substr(0, word.size() - ending.size());
@@ -70,7 +70,7 @@ std::uint64_t parse_count(const Input& in, Words& words, const char* what) {
 OffHeader parse_header(const Input& in, Words& words) {
   OffHeader header;
   std::string_view first = words.next("the keyword 'OFF'");
-  if (!to_whole(first)) {  // some writers leave the keyword out
+  if (!to_whole(first)) {  // some writers omit the keyword
     parse_keyword(in, words.line(), first, header);
     first = words.next("the number of vertices");
   }
@@ -83,7 +83,7 @@ OffHeader parse_header(const Input& in, Words& words) {
   std::string_view edges = words.rest_of_line();
   if (const std::string_view word = next_word(edges); !word.empty()) whole_or_fail(in, words.line(), word);
 
-  // A vertex takes at least "0 0 0" and a line end, a face "0" and a line end.
+  // The shortest vertex is "0 0 0" and a line end; the shortest face is "0" and a line end.
   const std::uint64_t left = in.bytes.size() - std::min(in.bytes.size(), words.position()) + 1;
   if (header.vertices > left / 6 || header.faces > left / 2) {
     fail_at_line(in, words.line(),
@@ -95,7 +95,8 @@ OffHeader parse_header(const Input& in, Words& words) {
   return header;
 }
 
-/// Red, green, blue, of which `word` is the first; opacity may follow. Fewer numbers stand for a color in a table.
+/// Reads red, green and blue, starting with `word`; an opacity may follow. Fewer than three numbers are an index into a table of
+/// colors, and are ignored.
 void read_color(const Input& in, std::int64_t line, std::string_view word, std::string_view rest,
                 std::vector<Vec3>& colors) {
   Vec3 color;
@@ -107,7 +108,7 @@ void read_color(const Input& in, std::int64_t line, std::string_view word, std::
   colors.push_back(color);
 }
 
-/// One line per vertex, so that a missing number cannot shift all the numbers behind it.
+/// Reads one line per vertex. Otherwise a missing number would shift all numbers after it.
 void read_vertices(const Input& in, Words& words, const OffHeader& header, Geometry& g) {
   g.points.resize(header.vertices);
   if (header.normals) g.normals.resize(header.vertices);
@@ -118,8 +119,8 @@ void read_vertices(const Input& in, Words& words, const OffHeader& header, Geome
     for (std::size_t k = 0; k < (header.normals ? 6 : 3); ++k, word = next_word(rest)) {
       if (word.empty()) {
         fail_at_line(in, words.line(),
-                     "vertex " + std::to_string(i) + " of " + std::to_string(header.vertices) + " has only " +
-                         std::to_string(k) + " numbers");
+                     "vertex " + std::to_string(i) + " of " + std::to_string(header.vertices) + " must have " +
+                         (header.normals ? "6" : "3") + " numbers, found " + std::to_string(k));
       }
       (k < 3 ? g.points[i][k] : g.normals[i][k - 3]) = real_or_fail(in, words.line(), word);
     }
@@ -149,7 +150,7 @@ void read_faces(const Input& in, Words& words, const OffHeader& header, Geometry
       g.face_vertices.push_back(static_cast<Index>(vertex));
     }
     g.face_begin.push_back(static_cast<Offset>(g.face_vertices.size()));
-    words.rest_of_line();  // perhaps a color
+    words.rest_of_line();  // skip an optional color
   }
 }
 

@@ -1,8 +1,7 @@
-// PLY is read here and not by a library because none in Debian 12 keeps the rules of `read`. CGAL's PLY_reader turns a
-// list count of the file into an allocation before looking at the file's size, shifts all data when it meets a type it
-// does not know, and in text stops at "nan" and takes "1,5" as 1; PCL's ply_parser turns every word that is no number
-// into NaN; OpenMesh needs a manifold; Assimp and VTK keep single precision. The body is one loop over items and
-// properties for all three encodings.
+// This reader does not use a library, because none in Debian 12 follows the rules of `read`. CGAL's PLY_reader allocates memory for
+// a list count without checking the file size, shifts all data after an unknown type, stops at "nan" in text, and reads "1,5" as 1.
+// PCL's ply_parser reads invalid numbers as NaN. OpenMesh requires a manifold. Assimp and VTK have single precision.
+// One loop over items and properties reads all three encodings.
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -16,7 +15,7 @@
 namespace ahm::io {
 namespace {
 
-/// Where the next value comes from: words of one line per item, or bytes.
+/// Source of the values: in text, one line per item; else bytes.
 class Body {
  public:
   Body(const Input& in, const PlyHeader& header, Lines&& lines)
@@ -43,19 +42,19 @@ class Body {
     return result;
   }
 
-  /// A whole number, exact: no PLY type holds one that a double does not.
+  /// An exact whole number: doubles represent the integers of all PLY types.
   std::int64_t whole(PlyType type) {
     if (text_) return whole_or_fail(in_, lines_.number(), word());
     return static_cast<std::int64_t>(value(type));
   }
 
-  /// The count of a list, not more than what can still follow.
+  /// The count of a list. Fails if the rest of the line or file is too short for so many values.
   std::size_t list_count(const PlyProperty& list) {
     const std::int64_t count = whole(*list.count_type);
     const std::size_t left = text_ ? (rest_.size() + 1) / 2 : (in_.bytes.size() - position_) / size_of(list.type);
     if (count < 0 || static_cast<std::uint64_t>(count) > left) {
       fail_here("list '" + list.name + "' of " + name_of_item() + " has count " + std::to_string(count) +
-                ", but at most " + std::to_string(left) + " values follow");
+                ", but at most " + std::to_string(left) + " can follow");
     }
     return static_cast<std::size_t>(count);
   }
@@ -106,11 +105,11 @@ class Body {
   std::uint64_t item_ = 0;
 };
 
-/// What a scalar property of the vertices is for: 0-2 position, 3-5 normal, 6-8 color.
+/// Roles of scalar properties of the vertices: 0-2 position, 3-5 normal, 6-8 color.
 constexpr std::size_t unused = 9;
 constexpr std::array<std::string_view, unused> roles = {"x", "y", "z", "nx", "ny", "nz", "red", "green", "blue"};
 
-/// The role of every property; normals and colors count only when complete.
+/// The role of every property. Normals and colors are used only if all three components exist.
 std::vector<std::size_t> assign_roles(const Input& in, const PlyElement& vertex) {
   std::vector<std::size_t> role_of(vertex.properties.size(), unused);
   for (std::size_t group = 0; group < unused; group += 3) {
@@ -128,7 +127,7 @@ std::vector<std::size_t> assign_roles(const Input& in, const PlyElement& vertex)
   return role_of;
 }
 
-/// Colors as bytes, or as numbers that are to become bytes.
+/// Colors as bytes, or as numbers that `move_to` converts to bytes.
 class Colors {
  public:
   Colors(const std::vector<std::size_t>& role_of, const PlyElement& vertex, std::size_t n) {
@@ -167,7 +166,7 @@ class Colors {
   std::vector<Vec3> numbers_;
 };
 
-/// @param take  gets the points, of which the last is kept; null: all are
+/// @param take  receives every point, and `g` keeps only the last one; null: `g` keeps all points
 void read_vertices(const Input& in, const PlyElement& vertex, Body& body, Geometry& g, const TakePoint* take) {
   for (const PlyProperty& p : vertex.properties) {
     if (p.count_type) {
@@ -216,8 +215,8 @@ void read_corners(const PlyProperty& list, Body& body, Geometry& g) {
   g.face_begin.push_back(static_cast<Offset>(g.face_vertices.size()));
 }
 
-/// A strip: each three successive vertices are a triangle, every second one the other way round; -1 begins a new strip.
-/// Three that are not distinct are not a face but a step to the next part of the strip.
+/// Reads a strip: each three successive vertices are a triangle, with alternating orientation; -1 begins a new strip. Triangles with
+/// two equal vertices only connect parts of the strip, and are skipped.
 void read_strip(const PlyProperty& list, Body& body, Geometry& g) {
   std::array<std::int64_t, 3> last{};
   std::size_t length = 0;
@@ -237,7 +236,7 @@ void read_strip(const PlyProperty& list, Body& body, Geometry& g) {
   }
 }
 
-/// Which property of a face or strip holds its vertex numbers.
+/// Index of the property that contains the vertex numbers of a face or strip.
 std::size_t find_corners(const Input& in, const PlyElement& element) {
   const std::optional<std::size_t> plural = element.find("vertex_indices");
   const std::optional<std::size_t> singular = element.find("vertex_index");
@@ -277,7 +276,7 @@ void read_items(const Input& in, const PlyElement& element, Body& body, Geometry
   }
 }
 
-/// @param take  as `read_vertices`
+/// @param take  as in `read_vertices`
 Geometry read_elements(const Input& in, const PlyHeader& header, Body& body, const TakePoint* take = nullptr) {
   if (std::ranges::find(header.elements, "vertex", &PlyElement::name) == header.elements.end()) {
     fail(in, "the PLY header has no element 'vertex'");
@@ -305,7 +304,7 @@ Geometry read(const Input& in) {
   return read_elements(in, header, body);
 }
 
-/// Of text.
+/// Passes the points of a text file to `take`. @return whether they have normals
 bool take_points(const ByteStream& file, const TakePoint& take) {
   const PlyHeader header = parse_ply_header(file.head());
   Body body(file.head(), header, Lines(file, header.body, header.body_line));

@@ -1,4 +1,4 @@
-// What laser scanners write, by no standard: the number of points, then x y z, perhaps intensity and red green blue.
+// PTS files of laser scanners. The format has no standard: the number of points, then x y z, optionally intensity and red green blue.
 #include "formats/format.hpp"
 #include "read/columns.hpp"
 

@@ -1,6 +1,5 @@
-// STL is a soup of triangles; it is welded here, at exactly equal positions, since a soup has no surface to walk on.
-// Read by our own code like the other mesh formats: Assimp, the library in Debian 12 that reads STL, rounds coordinates
-// to float.
+// STL files contain unconnected triangles; this reader welds them at exactly equal positions, to get a surface.
+// It does not use Assimp, the only STL reader in Debian 12, which rounds coordinates to float.
 #include <algorithm>
 #include <utility>
 
@@ -12,7 +11,7 @@
 namespace ahm::io {
 namespace {
 
-constexpr std::size_t header_bytes = 84;  // 80 of comment, then the number of triangles
+constexpr std::size_t header_bytes = 84;  // a comment of 80 bytes, then the number of triangles
 constexpr std::size_t triangle_bytes = 50;
 
 bool begins_with_solid(const std::string& bytes) {
@@ -23,7 +22,7 @@ bool begins_with_solid(const std::string& bytes) {
 
 bool is_binary(const Input& in) {
   if (in.bytes.size() < header_bytes) return false;
-  // Binary headers may begin with "solid" too, but only theirs tell the size of the file.
+  // A binary header may begin with "solid", too. But only in binary files does the number of triangles match the file size.
   const std::uint64_t triangles = load_at<std::uint32_t>(in.bytes, 80);
   return header_bytes + triangles * triangle_bytes == in.bytes.size() || !begins_with_solid(in.bytes) ||
          in.bytes.find('\0') < header_bytes;
@@ -46,7 +45,7 @@ std::vector<Vec3> read_binary(const Input& in) {
   return corners;
 }
 
-/// Every facet must have its three vertices and its end, so that a missing line cannot shift the others.
+/// Every facet must have three vertices and an end. Otherwise a missing line would shift all later vertices.
 std::vector<Vec3> read_text(const Input& in) {
   std::vector<Vec3> corners;
   std::vector<std::string_view> words;
@@ -58,7 +57,7 @@ std::vector<Vec3> read_text(const Input& in) {
     if (words.empty()) continue;
     const auto begins_with = [&](std::string_view word) { return equals_ignoring_case(words[0], word); };
     if (begins_with("facet")) {
-      if (open) fail_at_line(in, lines.number(), "a facet begins before the last one has ended");
+      if (open) fail_at_line(in, lines.number(), "a facet begins before the previous one has ended");
       open = true;
       in_facet = 0;
     } else if (begins_with("vertex")) {
@@ -68,7 +67,7 @@ std::vector<Vec3> read_text(const Input& in) {
       ++in_facet;
     } else if (begins_with("endfacet")) {
       if (!open || in_facet != 3)
-        fail_at_line(in, lines.number(), "the facet has " + std::to_string(in_facet) + " vertices instead of 3");
+        fail_at_line(in, lines.number(), "the facet must have 3 vertices, found " + std::to_string(in_facet));
       open = false;
     } else if (begins_with("endsolid")) {
       ended = true;
@@ -86,7 +85,7 @@ Geometry read(const Input& in) {
   const std::vector<Vec3> corners = binary ? read_binary(in) : read_text(in);
   g.format = binary ? "STL binary" : "STL text";
   check_vertex_count(in, corners.size());
-  if (corners.empty()) fail(in, "it holds no triangles");
+  if (corners.empty()) fail(in, "it contains no triangles");
   detail::Welded welded = detail::weld(corners);
   for (const Index corner : welded.first) g.points.push_back(corners[corner]);
   g.face_vertices = std::move(welded.number);

@@ -1,5 +1,5 @@
-// VTK's legacy format is read here and not by VTK, whose reader (9.1) hands out memory that was never written behind a damaged
-// number ("1,5"), takes 1e400 for the largest double and corners for what they say, with no error that a caller could see.
+// The legacy VTK format is not read with VTK. Its reader (9.1) returns uninitialized memory after an invalid number ("1,5"), reads
+// 1e400 as the largest double, and does not check corners. It reports no error in these cases.
 #include <array>
 #include <utility>
 
@@ -61,13 +61,14 @@ class VtkReader {
     const std::optional<double> number = to_real(next_word(version));
     if (!number || !(*number >= 1 && *number < 6))
       fail_at_byte(in_, beginning.size(),
-                   "the version is " + in_quotes(first.substr(beginning.size())) + "; 1 to 5 are known");
+                   "the version is " + in_quotes(first.substr(beginning.size())) + "; versions 1 to 5 are supported");
     constexpr double with_offsets = 5;
     offsets_ = *number >= with_offsets;
-    line();  // a title
+    line();  // the title
     const std::string_view kind = word_or_fail("ASCII or BINARY");
     binary_ = equals_ignoring_case(kind, "binary");
-    if (!binary_ && !equals_ignoring_case(kind, "ascii")) fail_here(in_quotes(kind) + " stands for ASCII or BINARY");
+    if (!binary_ && !equals_ignoring_case(kind, "ascii"))
+      fail_here("expected ASCII or BINARY, found " + in_quotes(kind));
   }
 
   void read_section(std::string_view keyword) {
@@ -77,7 +78,7 @@ class VtkReader {
     if (is("metadata")) return skip_metadata();
     if (!polydata_) fail_here("expected DATASET, found " + in_quotes(keyword));
     if (is("points")) {
-      if (std::exchange(has_points_, true)) fail_here("POINTS stands there a second time");
+      if (std::exchange(has_points_, true)) fail_here("POINTS appears twice");
       piece_.points = count("the number of points");
       check_vertex_count(in_, piece_.points);
       piece_.positions = numbers(word_or_fail("the type of the points"), piece_.points, 3, "points").values;
@@ -93,7 +94,7 @@ class VtkReader {
       by_point_ = is("point_data");
       tuples_ = count("the number of values");
       piece_.has_cell_data = piece_.has_cell_data || !by_point_;
-      if (by_point_ && !has_points_) fail_here("POINT_DATA stands before POINTS");
+      if (by_point_ && !has_points_) fail_here("POINT_DATA appears before POINTS");
       if (by_point_ && tuples_ != piece_.points)
         fail_here("there are values for " + std::to_string(tuples_) + " points, but there are " +
                   std::to_string(piece_.points) + " points");
@@ -106,10 +107,10 @@ class VtkReader {
     const std::string_view kind = word_or_fail("the kind of data");
     polydata_ = equals_ignoring_case(kind, "polydata");
     if (!polydata_)
-      fail_here("it holds " + in_quotes(kind) + ", of which only POLYDATA is read; save its surface as .vtp or .ply");
+      fail_here("it contains " + in_quotes(kind) + "; only POLYDATA can be read; save its surface as .vtp or .ply");
   }
 
-  /// Up to the next empty line.
+  /// Skips lines up to the next empty line.
   void skip_metadata() {
     line();
     while (!rest_.empty() && !line().empty()) {
@@ -119,7 +120,7 @@ class VtkReader {
   void read_attribute(std::string_view keyword) {
     struct Known {
       std::string_view keyword;
-      std::size_t width;  ///< 0: told by the file
+      std::size_t width;  ///< 0: the file contains the width
     };
     constexpr std::array<Known, 8> known = {{{"vectors", 3},
                                              {"normals", 3},
@@ -142,10 +143,10 @@ class VtkReader {
       const std::uint64_t wide = width == 0 ? count("the number of texture coordinates") : width;
       return keep(numbers(word_or_fail("the type of an array"), tuples_, wide, name));
     }
-    fail_here(in_quotes(keyword) + " is no keyword of a VTK file; the file is damaged");
+    fail_here(in_quotes(keyword) + " is not a VTK keyword; the file is damaged");
   }
 
-  /// Its line tells the type and perhaps the number of components; a table of colors may be named in the next one.
+  /// The current line contains the type and optionally the number of components; the next line may name a color table.
   void read_scalars(const std::string& name) {
     const std::string_view type = word_or_fail("the type of an array");
     std::string_view rest_of_line = rest_.substr(0, rest_.find('\n'));
@@ -158,7 +159,7 @@ class VtkReader {
     keep(numbers(type, tuples_, width, name));
   }
 
-  /// Arrays of any length; those that have a value for every point count.
+  /// Reads arrays of any length; keeps those with a value for every point.
   void read_field() {
     word_or_fail("the name of a field");
     for (std::uint64_t arrays = count("the number of arrays"); arrays > 0; --arrays) {
@@ -179,9 +180,9 @@ class VtkReader {
     }
   }
 
-  /// One on each line.
+  /// Skips an array of strings, one per line.
   void skip_strings(std::uint64_t width, std::uint64_t tuples, const std::string& name) {
-    if (binary_) fail_here("array " + in_quotes(name) + " holds texts, which are not read in binary files");
+    if (binary_) fail_here("array " + in_quotes(name) + " contains strings, which are not supported in binary files");
     line();
     for (std::uint64_t k = 0; k < tuples; ++k)
       for (std::uint64_t c = 0; c < width; ++c) {
@@ -195,7 +196,7 @@ class VtkReader {
     if (by_point_) piece_.arrays.push_back(std::move(array));
   }
 
-  /// Fractions of 1 in text, bytes in binary data.
+  /// Reads colors: fractions of 1 in text files, bytes in binary files.
   VtkArray colors(std::uint64_t tuples, std::uint64_t width, const std::string& name) {
     VtkArray array = numbers(binary_ ? "unsigned_char" : "float", tuples, width, name);
     array.name = "color_" + name;
@@ -204,7 +205,7 @@ class VtkReader {
 
   VtkArray numbers(std::string_view type_name, std::uint64_t tuples, std::uint64_t width, const std::string& name) {
     const std::optional<VtkType> type = find_vtk_type(type_name);
-    if (!type) fail_here("the type " + in_quotes(type_name) + " of " + in_quotes(name) + " is not read");
+    if (!type) fail_here("the type " + in_quotes(type_name) + " of " + in_quotes(name) + " is not supported");
     if (binary_) line();
     const std::uint64_t most = binary_ ? rest_.size() / type->size : (rest_.size() + 1) / 2;
     if (width > 0 && tuples > most / width)
@@ -221,13 +222,14 @@ class VtkReader {
     for (double& value : array.values) {
       const std::string_view text = word();
       const std::optional<double> number = to_vtk_number(text, *type);
-      if (!number) fail_here(in_quotes(text) + " stands for a number of " + in_quotes(name) + hint_at_comma(text));
+      if (!number)
+        fail_here("expected a number of " + in_quotes(name) + ", found " + in_quotes(text) + hint_at_comma(text));
       value = *number;
     }
     return array;
   }
 
-  /// Before version 5: the number of corners before the corners of each.
+  /// Before version 5, each cell is stored as its number of corners and the corners; since version 5, as offsets and corners.
   VtkCells read_cells() {
     const std::uint64_t first = count("the number of cells"), second = count("the number of numbers");
     VtkCells cells;
@@ -263,7 +265,7 @@ class VtkReader {
   std::string_view rest_;
   bool binary_ = false, offsets_ = false, polydata_ = false;
   bool has_points_ = false;
-  bool by_point_ = false;  ///< what follows belongs to the points
+  bool by_point_ = false;  ///< the following arrays have a value per point
   std::uint64_t tuples_ = 0;
   VtkPiece piece_;
 };

@@ -1,5 +1,5 @@
-// VTK's XML PolyData is written here and not by VTK, which is large and no part of most builds: a header of fixed layout,
-// with the arrays behind it as they are in memory (VTK file formats, "appended", "raw").
+// VTK's XML PolyData is not written with VTK, which is large and not part of most builds. The file is a header of fixed layout,
+// followed by the arrays as in memory (VTK file formats, "appended", "raw").
 #include <string>
 #include <string_view>
 
@@ -22,7 +22,7 @@ std::size_t bytes_of(const Column& column) {
   return column.rows() * column.names.size() * (type == "Float64" ? 8 : type == "Int32" ? 4 : 1);
 }
 
-/// A vector goes by the name of its first component without the x, normals and colors by those that VTK looks for.
+/// The name of the array: for a vector, the name of its first component without the x; for normals and colors, VTK's names.
 std::string name_of(const Column& column) {
   const std::string& first = column.names.front();
   if (column.names.size() == 1) return first;
@@ -33,7 +33,7 @@ std::string name_of(const Column& column) {
 
 bool is_position(const Column& column) { return column.names == std::vector<std::string>{"x", "y", "z"}; }
 
-/// The header, in which every array knows where its bytes will stand.
+/// The XML header. Computes the offset of every array in the appended data.
 class Header {
  public:
   void add(const std::string& type, const std::string& name, std::size_t components, std::size_t bytes) {
@@ -59,7 +59,7 @@ class Header {
   std::uint64_t offset_ = 0;
 };
 
-/// One array of the appended data: its length in bytes, then they.
+/// Writes one array of the appended data: its length in bytes, then the bytes.
 class Block {
  public:
   Block(AtomicFile& file, std::size_t bytes) : file_(file) { append(bytes_, static_cast<std::uint64_t>(bytes)); }
@@ -84,7 +84,7 @@ void write_column(AtomicFile& file, const Column& column) {
   block.flush();
 }
 
-/// Cells of `corner(k)`, each of which ends at `end(cell)`.
+/// Writes cells with the corners `corner(k)`. The corners of a cell end before k = `end(cell)`.
 template <class Corner, class End>
 void write_cells(AtomicFile& file, std::size_t cells, std::size_t corners, const Corner& corner, const End& end) {
   Block connectivity(file, 4 * corners);
@@ -95,7 +95,7 @@ void write_cells(AtomicFile& file, std::size_t cells, std::size_t corners, const
   offsets.flush();
 }
 
-/// Points that no face and no edge shows are cells of their own.
+/// Number of points that are cells: all points if there are no faces and no edges, else none.
 std::size_t single_points(const Table& table) {
   return table.faces.size() > 0 || !table.edges.empty() ? 0 : table.rows();
 }

@@ -1,4 +1,4 @@
-// Stands in for stb.cpp in a build without stb.
+// Replaces stb.cpp in builds without stb.
 #include "ahm/io/image.hpp"
 
 namespace ahm::io {

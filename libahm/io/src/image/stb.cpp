@@ -1,4 +1,4 @@
-// The only place of io that includes stb_image and stb_image_write.
+// The only file of io that includes stb_image and stb_image_write.
 #include <algorithm>
 #include <climits>
 #include <fstream>
@@ -14,7 +14,7 @@
 
 namespace {
 
-/// Deflates for stb, whose own way takes longer and makes more. @return memory for `free`; null where there is none
+/// Compressor for stb; faster and smaller output than stb's own. @return memory to be released by `free`; null on failure
 unsigned char* deflate_by_zlib(unsigned char* data, int length, int* size, int) {
   uLongf room = compressBound(static_cast<uLong>(length));
   auto* made = static_cast<unsigned char*>(std::malloc(room));
@@ -77,7 +77,7 @@ Image read_image(const std::filesystem::path& path) {
       stbi_load_from_memory(reinterpret_cast<const stbi_uc*>(bytes.data()), static_cast<int>(bytes.size()), &width,
                             &height, &channels, 4),
       stbi_image_free);
-  if (!pixels) throw IoError(path.string() + ": no PNG or JPEG image that can be read (" + stbi_failure_reason() + ")");
+  if (!pixels) throw IoError(path.string() + ": not a readable PNG or JPEG image (" + stbi_failure_reason() + ")");
   Image image(width, height);
   std::copy_n(pixels.get(), image.rgba.size(), image.rgba.begin());
   return image;
@@ -88,7 +88,7 @@ std::string png_bytes(const Image& image) {
       image.rgba.size() != 4 * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height))
     throw InvalidArgument("image: " + std::to_string(image.width) + " x " + std::to_string(image.height) +
                           " pixels do not fit " + std::to_string(image.rgba.size()) + " bytes");
-  // Without its opacity where all of it is opaque, which is a quarter less to compress.
+  // Fully opaque images are written without the alpha channel: a quarter less data to compress.
   bool opaque = true;
   for (std::size_t k = 3; k < image.rgba.size() && opaque; k += 4) opaque = image.rgba[k] == 255;
   std::vector<std::uint8_t> rgb;

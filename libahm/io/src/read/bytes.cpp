@@ -23,7 +23,7 @@ constexpr std::uint64_t unbounded = std::numeric_limits<std::uint64_t>::max();
 
 std::uint64_t difference(std::uint64_t limit, std::uint64_t used) { return limit - std::min(limit, used); }
 
-/// The first number of a file of the system; nullopt when there is none.
+/// The first number in a file of the operating system; nullopt if there is none.
 std::optional<std::uint64_t> number_in(const char* path) {
   std::ifstream file(path);
   std::uint64_t number = 0;
@@ -66,9 +66,9 @@ std::string reason(int error) { return std::generic_category().message(error); }
 
 }  // namespace
 
-RegularFile::RegularFile(const std::filesystem::path& path) : RegularFile() {  // hence closed where this throws
+RegularFile::RegularFile(const std::filesystem::path& path) : RegularFile() {  // delegates for cleanup
   path_ = path;
-  // Not blocking, so that a named pipe nobody writes to is refused rather than waited for.
+  // Non-blocking: opening a named pipe without a writer would otherwise wait.
   descriptor_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   struct stat info {};
   if (descriptor_ < 0 || ::fstat(descriptor_, &info) != 0) refuse(path, reason(errno));

@@ -1,4 +1,4 @@
-// Plain columns of numbers have no standard and no library; every line must have as many columns as the first one.
+// There is no standard and no library for columns of numbers. Every line must have as many columns as the first one.
 #include "read/columns.hpp"
 
 #include <algorithm>
@@ -14,15 +14,15 @@ namespace ahm::io {
 enum class ColumnRole { unknown, normals, colors };
 
 struct ColumnNames {
-  std::array<std::size_t, 3> position;  ///< of x, y, z
+  std::array<std::size_t, 3> position;  ///< columns of x, y, z
   std::vector<std::pair<ColumnRole, std::array<std::size_t, 3>>> triples;
 };
 
-/// Whether one of the words is "x", one "y" and one "z", in any case.
+/// Whether the words include "x", "y" and "z", in any case.
 bool names_position(const std::vector<std::string_view>& words);
 
-/// x y z; nx ny nz; red green blue, r g b, or rf gf bf; in any case and order, among others.
-/// @throws IoError when one of x, y, z is missing, or a name that is read is there twice
+/// Finds the columns x y z; nx ny nz; red green blue, r g b, or rf gf bf, in any case and order.
+/// @throws IoError if one of x, y, z is missing, or one of these names appears twice
 ColumnNames find_columns(const Input& in, std::int64_t line, const std::vector<std::string_view>& words);
 
 std::optional<std::vector<Color>> to_colors(const std::vector<Vec3>& values, bool deep) {
@@ -118,7 +118,7 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(begin, text.find_last_not_of(" \t\r\"") - begin + 1);
 }
 
-/// Between delimiters; a blank delimiter stands for any run of blanks and tabs.
+/// Splits a line at a delimiter. The delimiter ' ' stands for any run of blanks and tabs.
 void split(std::string_view line, char delimiter, Words& words) {
   if (delimiter == ' ') return split_words(line, words);
   words.clear();
@@ -130,7 +130,7 @@ void split(std::string_view line, char delimiter, Words& words) {
   }
 }
 
-/// Whether no column holds two numbers, as those of "1,5 2,5 3,5" would.
+/// Whether the delimiter separates the numbers: no column may contain two numbers, as in "1,5 2,5 3,5" with commas.
 bool separates(std::string_view line, char delimiter, Words& words) {
   if (line.find(delimiter) == std::string_view::npos) return false;
   split(line, delimiter, words);
@@ -140,7 +140,7 @@ bool separates(std::string_view line, char delimiter, Words& words) {
   });
 }
 
-/// Semicolon first, because commas may then be (refused) decimals.
+/// The delimiter of a line. Semicolons have priority, because commas are then decimal commas (an error).
 char find_delimiter(std::string_view line, const ColumnDialect& dialect) {
   Words words;
   if (line.find(';') != std::string_view::npos) return ';';
@@ -148,7 +148,7 @@ char find_delimiter(std::string_view line, const ColumnDialect& dialect) {
   return dialect.tabs_separate && line.find('\t') != std::string_view::npos ? '\t' : ' ';
 }
 
-/// Whole numbers up to 255 cannot all be meant as normals when one exceeds 1.
+/// Decides whether vectors are colors: all values are whole numbers up to 255, and one exceeds 1, unlike normals.
 class LevelTest {
  public:
   void add(const Vec3& value) {
@@ -165,7 +165,7 @@ class LevelTest {
 
 class ColumnReader {
  public:
-  /// @param take  gets the points, and nothing is kept; null: all is kept
+  /// @param take  receives every point, and nothing is stored; null: everything is stored
   ColumnReader(const Input& in, Lines&& lines, const ColumnDialect& dialect, const TakePoint* take = nullptr)
       : in_(in), dialect_(dialect), take_(take), lines_(std::move(lines)) {}
 
@@ -175,7 +175,7 @@ class ColumnReader {
     return std::move(g_);
   }
 
-  /// Whether points have normals.
+  /// Reads all points and passes them to the callback. @return whether the points have normals
   bool take() {
     read_rows();
     return std::ranges::any_of(triples_, [](const Triple& t) { return t.role == ColumnRole::normals; });
@@ -190,15 +190,15 @@ class ColumnReader {
       read_row();
     }
     if (count_ == 0)
-      fail(in_, names_found_ ? "the file holds no point below the column names" : "the file holds no point");
+      fail(in_, names_found_ ? "the file contains no points below the column names" : "the file contains no points");
     if (left_.value_or(0) > 0)
       fail_at_line(in_, lines_.number(),
-                   "the file ends " + std::to_string(*left_) + " points before the announced number");
+                   "the file ends before the announced number of points; missing: " + std::to_string(*left_));
     check_vertex_count(in_, count_);
     choose_roles();
   }
 
-  /// Three columns that are one vector.
+  /// Three columns that form a vector.
   struct Triple {
     ColumnRole role;
     std::array<std::size_t, 3> columns;
@@ -206,7 +206,7 @@ class ColumnReader {
     std::vector<Vec3> values = {};
   };
 
-  /// A named column that is no part of a vector.
+  /// A named column that is not part of a vector.
   struct Other {
     std::size_t column;
     std::string name;
@@ -214,7 +214,7 @@ class ColumnReader {
     bool is_numbers = true;
   };
 
-  /// The next line that holds anything; // is a comment unless it names the columns.
+  /// Moves to the next line that is not empty. // begins a comment, unless the column names follow.
   bool next_line() {
     while (lines_.next_filled('#')) {
       line_ = trimmed(lines_.line());
@@ -227,7 +227,7 @@ class ColumnReader {
     return false;
   }
 
-  /// A line of one whole number: so many points follow.
+  /// Whether the line is a single whole number: the number of points that follow.
   bool begins_block() {
     if (line_.find_first_of(" \t,;") != std::string_view::npos || (left_ ? *left_ > 0 : count_ > 0)) return false;
     const std::optional<std::int64_t> count = to_whole(line_);
@@ -256,7 +256,7 @@ class ColumnReader {
            std::ranges::any_of(triples_, [&](const Triple& triple) { return holds(triple.columns); });
   }
 
-  /// Numbers, or nothing where there is none; a column that holds anything else is left out.
+  /// Reads the columns that are not part of a vector. Empty entries are NaN. Ignores columns with other contents than numbers.
   void read_others() {
     for (Other& other : others_) {
       if (!other.is_numbers) continue;
@@ -271,12 +271,13 @@ class ColumnReader {
     if (left_ && (*left_)-- == 0) fail_at_line(in_, lines_.number(), "more points than the announced number");
     if (delimiter_ == '\0') delimiter_ = find_delimiter(line_, dialect_);
     split(line_, delimiter_, words_);
-    const bool open_end = words_.size() > 3 && words_.back().empty();  // a delimiter at the end of the line
+    const bool open_end = words_.size() > 3 && words_.back().empty();  // the line ends with a delimiter
     if (open_end && (columns_ == 0 || words_.size() == columns_ + 1)) words_.pop_back();
     if (columns_ == 0) choose_columns();
     if (words_.size() != columns_)
       fail_at_line(in_, lines_.number(),
-                   std::to_string(words_.size()) + " columns, but the lines before have " + std::to_string(columns_));
+                   "expected " + std::to_string(columns_) + " columns, as in the lines before, found " +
+                       std::to_string(words_.size()));
     ++count_;
     const Vec3 point = vector(position_);
     for (Triple& triple : triples_) {
@@ -291,7 +292,7 @@ class ColumnReader {
     if (intensity_) intensity_->push_back(intensity);
   }
 
-  /// By their number, of a file that does not name them.
+  /// Determines the meaning of unnamed columns from their number.
   void choose_columns() {
     columns_ = words_.size();
     if (columns_ < 3)
@@ -311,7 +312,7 @@ class ColumnReader {
     return result;
   }
 
-  /// Unnamed columns are normals unless they can only be colors. Of two, one must be each.
+  /// Unnamed vectors are normals, unless they can only be colors. Two vectors of the same kind are ignored.
   void choose_roles() {
     for (Triple& triple : triples_)
       if (triple.role == ColumnRole::unknown) tell(triple);
@@ -351,17 +352,17 @@ class ColumnReader {
   const TakePoint* take_;
   Lines lines_;
   Geometry g_;
-  std::uint64_t count_ = 0;  ///< of points
+  std::uint64_t count_ = 0;  ///< number of points
   std::string_view line_;
   Words words_;
-  char delimiter_ = '\0';    ///< not known yet
-  std::size_t columns_ = 0;  ///< in every line; 0: not known yet
+  char delimiter_ = '\0';    ///< '\0': unknown so far
+  std::size_t columns_ = 0;  ///< number of columns in every line; 0: unknown so far
   std::array<std::size_t, 3> position_ = {0, 1, 2};
   std::vector<Triple> triples_;
   std::optional<std::vector<double>> intensity_;
   std::vector<Other> others_;
   bool names_found_ = false;
-  std::optional<std::int64_t> left_;  ///< points of this block to come, where their number is announced
+  std::optional<std::int64_t> left_;  ///< number of remaining points of the block; nullopt: not announced
 };
 
 }  // namespace

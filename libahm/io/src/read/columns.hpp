@@ -1,5 +1,5 @@
 /// \file
-/// Colors that stand in a file as plain numbers.
+/// Text files with columns of numbers, and conversion of numbers to colors.
 #pragma once
 
 #include <array>
@@ -17,25 +17,25 @@ namespace ahm::io {
 
 using Color = std::array<std::uint8_t, 3>;
 
-/// Red, green, blue as fractions of 1 (when none exceeds 1), else as whole levels up to 255, else, where `deep`, as whole
-/// levels up to 65535. nullopt when they are none of these.
+/// Converts red, green, blue to bytes. The values are fractions of 1 (if none exceeds 1), else whole levels up to 255, else, if
+/// `deep`, whole levels up to 65535. nullopt for other values.
 std::optional<std::vector<Color>> to_colors(const std::vector<Vec3>& values, bool deep = false);
 
-/// Adds a property, under a name that a column may have (letters, digits and _) and that no other one has.
+/// Adds a property. Changes its name if necessary: only letters, digits and _, and different from other names.
 void add_property(Geometry& g, const std::string& name, std::vector<double> values);
 
-/// What cannot be told from the file.
+/// Differences between the formats that cannot be detected in a file.
 struct ColumnDialect {
-  const char* format;                ///< for messages
-  bool tabs_separate = false;        ///< every tab ends a column, perhaps an empty one; else it is a blank
-  bool fourth_is_intensity = false;  ///< of four columns, and of seven, which end with red green blue
+  const char* format;                ///< name of the format, for messages
+  bool tabs_separate = false;        ///< every tab ends a column, possibly an empty one; else tabs are blanks
+  bool fourth_is_intensity = false;  ///< if there are four columns, or seven, of which the last are red green blue
 };
 
-/// Columns separated by semicolons, commas or blanks, one of these in the whole file; perhaps names of the columns first
-/// (also behind //), perhaps a line with the number of points, after which so many follow, and then another such block.
-/// @throws IoError naming the line
+/// Reads columns separated by semicolons, commas or blanks, the same separator in the whole file. A line with the names of the
+/// columns may come first (also after //). A line with a single number begins a block of so many points.
+/// @throws IoError with the line
 Geometry read_columns(const Input& in, const ColumnDialect& dialect);
-/// The same, of which points alone are kept. @return whether they have normals
+/// Reads columns like `read_columns`, but only passes the points to `take`. @return whether they have normals
 bool take_columns(const ByteStream& file, const ColumnDialect& dialect, const TakePoint& take);
 
 }  // namespace ahm::io

@@ -16,12 +16,12 @@ struct Chunks {
   std::string_view json, binary;
 };
 
-/// A header of 12 bytes, then chunks, each behind its length and kind.
+/// Finds the chunks of a .glb file: a header of 12 bytes, then chunks, each preceded by its length and kind.
 Chunks find_chunks(const Input& in) {
   const std::string_view bytes = in.bytes;
   if (bytes.size() < 20) fail_at_byte(in, bytes.size(), "the file ends within its header");
   if (const auto version = load_at<std::uint32_t>(bytes, 4); version != 2)
-    fail_at_byte(in, 4, "glTF " + std::to_string(version) + " is not read, only 2");
+    fail_at_byte(in, 4, "glTF " + std::to_string(version) + " is not supported; glTF 2 is");
   const std::uint64_t size = load_at<std::uint32_t>(bytes, 8);
   if (size > bytes.size())
     fail_at_byte(in, 8,
@@ -58,7 +58,7 @@ std::optional<std::string> from_base64(std::string_view text) {
 
 bool is_data(const std::string& uri) { return uri.starts_with("data:"); }
 
-/// %20 and the like.
+/// Decodes escapes such as %20.
 std::string without_escapes(std::string_view uri) {
   std::string result;
   for (std::size_t k = 0; k < uri.size(); ++k) {
@@ -77,7 +77,7 @@ std::string without_escapes(std::string_view uri) {
 
 struct Component {
   std::size_t size;
-  double largest;  ///< of a whole number, for normalizing
+  double largest;  ///< largest value of the integer type, for normalization
   double (*load)(std::string_view bytes, std::size_t at);
 };
 
@@ -115,13 +115,13 @@ GltfFile::GltfFile(const Input& in) : in_(in) {
   if (!root_.is_object()) fail(in, "its JSON is damaged or cut short");
   chunk_ = chunks.binary;
   if (const auto asset = root_.find("asset"); asset == root_.end() || !asset->is_object())
-    fail(in, "its JSON is no glTF: there is no 'asset'");
+    fail(in, "its JSON is not glTF: it has no 'asset'");
 }
 
 const GltfFile::Json& GltfFile::item(const char* list, std::uint64_t index) const {
   const auto found = root_.find(list);
   if (found == root_.end() || !found->is_array() || index >= found->size() || !(*found)[index].is_object())
-    fail(in_, "there is no number " + std::to_string(index) + " of '" + list + "'");
+    fail(in_, "there is no entry " + std::to_string(index) + " in '" + list + "'");
   return (*found)[index];
 }
 
@@ -157,7 +157,7 @@ const std::string& GltfFile::buffer(std::uint64_t index) {
   } else if (const std::string uri = found->is_string() ? found->get<std::string>() : ""; is_data(uri)) {
     const std::size_t comma = uri.find(";base64,");
     const auto data = comma == std::string::npos ? std::nullopt : from_base64(std::string_view(uri).substr(comma + 8));
-    if (!data) fail(in_, "buffer " + std::to_string(index) + " is no base64 data");
+    if (!data) fail(in_, "buffer " + std::to_string(index) + " is not base64 data");
     bytes = *data;
   } else {
     bytes = load(file(uri)).bytes;
@@ -187,12 +187,12 @@ GltfArray GltfFile::array(std::uint64_t number) {
   const Json& accessor = item("accessors", number);
   const std::string name = "accessor " + std::to_string(number);
   if (accessor.contains("sparse") || !accessor.contains("bufferView"))
-    fail(in_, name + " has no data of its own (sparse), which is not read");
+    fail(in_, name + " has no data of its own (sparse), which is not supported");
   const std::optional<Component> component = find_component(whole(accessor, "componentType", 0));
   const auto type = accessor.find("type");
   const std::string kind = type != accessor.end() && type->is_string() ? type->get<std::string>() : "";
   const std::size_t width = kind == "SCALAR" ? 1 : kind == "VEC2" ? 2 : kind == "VEC3" ? 3 : kind == "VEC4" ? 4 : 0;
-  if (!component || width == 0) fail(in_, name + " has no type that is known here");
+  if (!component || width == 0) fail(in_, name + " has an unsupported type");
 
   const Json& view = item("bufferViews", whole(accessor, "bufferView", 0));
   const std::string& bytes = buffer(whole(view, "buffer", not_there));
@@ -226,7 +226,7 @@ using Columns = std::array<Vec3, 4>;
 constexpr std::uint64_t none = std::numeric_limits<std::uint64_t>::max();
 constexpr Columns unplaced = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}}};
 
-/// a after b.
+/// The transformation b followed by a.
 Columns product(const Columns& a, const Columns& b) {
   Columns result{};
   for (std::size_t k = 0; k < 4; ++k)
@@ -235,7 +235,7 @@ Columns product(const Columns& a, const Columns& b) {
   return result;
 }
 
-/// The matrix of a node, or its translation after its rotation (a unit quaternion x, y, z, w) after its scale.
+/// The transformation of a node: its matrix, or its scale, followed by its rotation (a unit quaternion x, y, z, w) and translation.
 Columns placement_of(const GltfFile& file, const Json& node) {
   Columns columns = unplaced;
   if (const std::vector<double> m = file.numbers(node, "matrix", 16); !m.empty()) {
@@ -255,14 +255,15 @@ Columns placement_of(const GltfFile& file, const Json& node) {
   return columns;
 }
 
-/// The whole numbers of a list of nodes, last first, for a stack.
+/// The numbers in a list of nodes, in reverse order, to be pushed onto a stack.
 std::vector<std::uint64_t> reversed_list(const Input& in, const Json& object, const char* member) {
   std::vector<std::uint64_t> result;
   const auto found = object.find(member);
   if (found == object.end()) return result;
-  if (!found->is_array()) fail(in, "'" + std::string(member) + "' is no list");
+  if (!found->is_array()) fail(in, "'" + std::string(member) + "' is not a list");
   for (auto entry = found->rbegin(); entry != found->rend(); ++entry) {
-    if (!entry->is_number_unsigned()) fail(in, "'" + std::string(member) + "' holds something else than whole numbers");
+    if (!entry->is_number_unsigned())
+      fail(in, "'" + std::string(member) + "' contains a value that is not a whole number");
     result.push_back(entry->get<std::uint64_t>());
   }
   return result;
@@ -293,7 +294,7 @@ std::vector<GltfPlacement> placed_meshes(const Input& in, const GltfFile& file) 
     const auto [number, parent] = open.back();
     open.pop_back();
     const Json& node = file.item("nodes", number);
-    if (seen[number]) fail(in, "node " + std::to_string(number) + " is there twice in the scene");
+    if (seen[number]) fail(in, "node " + std::to_string(number) + " appears twice in the scene");
     seen[number] = true;
     const Columns columns = product(parent, placement_of(file, node));
     if (const std::uint64_t mesh = file.whole(node, "mesh", none); mesh != none) result.push_back({mesh, columns});

@@ -1,5 +1,5 @@
 /// \file
-/// What a glTF file is made of: its JSON, its buffers, and arrays of numbers in these.
+/// The parts of a glTF file: JSON, buffers, and arrays of numbers in the buffers.
 #pragma once
 
 #include <array>
@@ -17,10 +17,10 @@ namespace ahm::io {
 struct GltfArray {
   std::uint64_t count = 0;
   std::size_t width = 0;
-  std::vector<double> values;  ///< count x width
+  std::vector<double> values;  ///< values of shape count x width
 };
 
-/// A .gltf or .glb with its buffers: in the file, in its JSON, or in files beside it.
+/// A .gltf or .glb file with its buffers, which are in the file, in its JSON, or in other files.
 class GltfFile {
  public:
   using Json = nlohmann::json;
@@ -29,15 +29,15 @@ class GltfFile {
   explicit GltfFile(const Input& in);
 
   const Json& root() const noexcept { return root_; }
-  /// Number `index` of a list of the root. @throws IoError
+  /// Element `index` of a list of the root object. @throws IoError
   const Json& item(const char* list, std::uint64_t index) const;
-  /// A whole number >= 0, `none` when there is no such member. @throws IoError when it is something else
+  /// The value of a member, a whole number >= 0; `none` if the member is missing. @throws IoError if it has another type
   std::uint64_t whole(const Json& object, const char* member, std::uint64_t none) const;
-  /// `count` numbers; empty when there is no such member. @throws IoError when it is something else
+  /// The value of a member, `count` numbers; empty if the member is missing. @throws IoError if it has another type
   std::vector<double> numbers(const Json& object, const char* member, std::size_t count) const;
-  /// The files beside it that its buffers are in, whether they exist or not.
+  /// The other files that contain its buffers, whether they exist or not.
   std::vector<std::filesystem::path> files() const;
-  /// The numbers of an accessor, normalized ones in [0, 1] or [-1, 1]. @throws IoError
+  /// The numbers of an accessor; normalized integers become numbers in [0, 1] or [-1, 1]. @throws IoError
   GltfArray array(std::uint64_t accessor);
 
  private:
@@ -47,16 +47,16 @@ class GltfFile {
   const Input& in_;
   Json root_;
   std::string chunk_;                 ///< the binary chunk of a .glb
-  std::vector<std::string> buffers_;  ///< empty: not loaded yet
+  std::vector<std::string> buffers_;  ///< buffers that have been loaded; others are empty
 };
 
 struct GltfPlacement {
   std::uint64_t mesh = 0;
-  std::array<Vec3, 4> columns{};  ///< of the matrix that places it: x, y, z, translation
+  std::array<Vec3, 4> columns{};  ///< columns of its transformation: x, y, z, translation
 };
 
-/// The meshes of the file's scene, in the order of its nodes; of all meshes, each once, where there is no scene.
-/// @throws IoError also when a node is its own descendant or has two parents
+/// The meshes of the file's scene with their transformations, in the order of the nodes. Without a scene: every mesh once.
+/// @throws IoError, also when a node is its own descendant or has two parents
 std::vector<GltfPlacement> placed_meshes(const Input& in, const GltfFile& file);
 
 }  // namespace ahm::io

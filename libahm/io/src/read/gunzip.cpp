@@ -1,4 +1,4 @@
-// zlib unpacks. What it makes is bounded: a few megabytes may stand for gigabytes.
+// The unpacked size is limited, because a few compressed megabytes may unpack to gigabytes.
 #include "read/gunzip.hpp"
 
 #include <zlib.h>
@@ -32,13 +32,13 @@ class Gunzip::Inflater {
       if (member_ends_)
         done_ = !next_member();
       else if (made < room.size() && !fetch())
-        fail_at_byte(in_, taken_, "the compressed data ends here, but not what it stands for; the file is cut short");
+        fail_at_byte(in_, taken_, "the compressed data is incomplete; the file is cut short");
     }
     return made;
   }
 
  private:
-  /// Whether there are bytes to unpack.
+  /// Gets the next bytes if necessary. @return whether there are bytes to unpack
   bool fetch() {
     if (given_.empty() && !ended_) {
       given_ = more_();
@@ -70,14 +70,14 @@ class Gunzip::Inflater {
     taken_ += bytes;
   }
 
-  /// Whether another member follows. Zeros may fill the last block of a tape.
+  /// Whether another member follows. Ignores zeros at the end, which may fill the last block of a tape.
   bool next_member() {
     if (!fetch()) return false;
     const std::size_t begin = taken_;
     if (given_.front() == '\x1f') return ::inflateReset(&stream_) == Z_OK;
     while (fetch()) {
       if (given_.find_first_not_of('\0') != std::string_view::npos)
-        fail_at_byte(in_, begin, "the file goes on behind its compressed data");
+        fail_at_byte(in_, begin, "the file continues after its compressed data");
       take(given_.size());
     }
     return false;
@@ -87,7 +87,7 @@ class Gunzip::Inflater {
   std::function<std::string_view()> more_;
   std::string_view given_;
   z_stream stream_{};
-  std::size_t taken_ = 0;  ///< bytes of the file
+  std::size_t taken_ = 0;  ///< number of bytes of the file that have been unpacked
   bool ended_ = false, member_ends_ = false, done_ = false;
 };
 
@@ -100,10 +100,10 @@ std::size_t Gunzip::read(std::span<char> room) { return inflater_->read(room); }
 
 namespace {
 
-/// Twice as much room, from four times the file on.
+/// Doubles the size of `room`, starting at four times the size of the file.
 void grow(const Input& in, std::uint64_t most, std::string& room) {
   constexpr std::size_t least = 1 << 16;
-  if (room.size() >= most) fail_too_large(in, "unpacked it", most);
+  if (room.size() >= most) fail_too_large(in, "its unpacked content", most);
   const std::uint64_t wanted = room.empty() ? 4 * in.bytes.size() : 2 * room.size();
   room.resize(std::min<std::uint64_t>(most, std::max<std::uint64_t>(wanted, least)));
 }

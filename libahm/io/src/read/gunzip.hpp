@@ -1,5 +1,5 @@
 /// \file
-/// What zlib compresses: files with gzip, and blocks within files.
+/// Decompression with zlib: gzip files, and blocks within files.
 #pragma once
 
 #include <cstdint>
@@ -14,18 +14,18 @@ namespace ahm::io {
 
 bool is_gzip(const Input& in);
 
-/// What a gzip file holds, all members one after the other, in blocks.
+/// Unpacks a gzip file in blocks; concatenates its members.
 class Gunzip {
  public:
-  /// @param more  the next bytes of the file, valid until it is called again; none at the end
-  /// @throws IoError where this build is without zlib
+  /// @param more  returns the next bytes of the file, valid until its next call; empty at the end
+  /// @throws IoError if this build has no zlib
   Gunzip(const Input& in, std::function<std::string_view()> more);
   ~Gunzip();
   Gunzip(const Gunzip&) = delete;
   Gunzip& operator=(const Gunzip&) = delete;
 
-  /// Fills room. @return how many bytes there were; fewer than fit only at the end
-  /// @throws IoError when the data is cut short or damaged
+  /// Fills `room` with unpacked bytes. @return their number, less than the size of `room` only at the end
+  /// @throws IoError when the data is truncated or damaged
   std::size_t read(std::span<char> room);
 
  private:
@@ -33,14 +33,14 @@ class Gunzip {
   std::unique_ptr<Inflater> inflater_;
 };
 
-/// Puts what a gzip file holds in its place, all members one after the other.
-/// @throws IoError when the data is cut short or damaged, or this build is without zlib
-/// @throws ResourceExhausted when it would fill more than a third of the memory that is free
+/// Replaces the bytes of a gzip file by its unpacked contents; concatenates its members.
+/// @throws IoError when the data is truncated or damaged, or this build has no zlib
+/// @throws ResourceExhausted when the contents would use more than a third of the free memory
 void gunzip(Input& in);
 
-/// Unpacks one block of zlib's own format, which fills `room` exactly.
-/// @param what  what the block is a part of, for messages
-/// @throws IoError when it does not, or this build is without zlib
+/// Unpacks one block in zlib format.
+/// @param what  name of the data that contains the block, for messages
+/// @throws IoError when the contents do not fill `room` exactly, or this build has no zlib
 void inflate_block(const Input& in, std::string_view packed, std::span<char> room, const std::string& what);
 
 }  // namespace ahm::io

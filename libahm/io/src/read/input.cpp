@@ -33,8 +33,8 @@ Input load(const std::filesystem::path& path) {
 
 namespace {
 
-/// Of no known size, and perhaps without end.
-/// @param next  next(in, room, size): reads up to so many bytes, and tells how many; 0 at the end
+/// Reads input of unknown size, up to the limit `room_for_input`.
+/// @param next  next(in, room, size) reads up to `size` bytes into `room` and returns their number; 0 at the end
 template <class Next>
 Input load_unnamed(const Next& next) {
   Input in{"-", {}};
@@ -82,7 +82,7 @@ void fail(const Input& in, const std::string& what) {
 
 void fail_too_large(const Input& in, const std::string& what, std::uint64_t most) {
   throw ResourceExhausted("cannot read " + quoted_path(in.path) + ": " + what + " is larger than " +
-                          std::to_string(most >> 20) + " MB, a third of the memory that is free");
+                          std::to_string(most >> 20) + " MB, a third of the free memory");
 }
 
 void fail_at_line(const Input& in, std::int64_t line, const std::string& what) {
@@ -95,7 +95,7 @@ void fail_at_byte(const Input& in, std::size_t byte, const std::string& what) {
 
 void check_vertex_count(const Input& in, std::uint64_t count) {
   if (count > static_cast<std::uint64_t>(std::numeric_limits<Index>::max())) {
-    fail(in, std::to_string(count) + " vertices are more than 2147483647, the most this library can number");
+    fail(in, std::to_string(count) + " vertices are more than 2147483647, the maximum");
   }
 }
 

@@ -1,5 +1,5 @@
 /// \file
-/// How much memory there is to take.
+/// Input files in memory, and error messages about them.
 #pragma once
 
 #include <cstdint>
@@ -14,31 +14,33 @@
 
 namespace ahm::io {
 
-/// A whole file in memory: readers see one unchanging state of it, and know its size before they believe a count.
+/// A file in memory. Readers work on this copy, so the file may change, and check counts against its size.
 struct Input {
   std::filesystem::path path;
   std::string bytes;
-  std::uint64_t beyond = 0;  ///< where only the beginning was loaded: bytes that follow
+  std::uint64_t beyond = 0;  ///< number of bytes of the file that are not in `bytes`
 
-  /// Bytes of the file.
+  /// Size of the file, bytes.
   std::uint64_t size() const { return bytes.size() + beyond; }
 };
 
-/// Reads a regular file, and unpacks what is compressed with gzip, whatever its name. @throws IoError with the system's
-/// reason; empty files are refused here
+/// Reads a regular file, and unpacks it if it is compressed with gzip, independently of its name.
+/// @throws IoError with the system's reason, or if the file is empty
 Input load(const std::filesystem::path& path);
 
-/// The same of all that a stream holds, under the name "-". @throws IoError; an empty stream is refused here
+/// Reads a stream to its end, under the name "-", and unpacks it if it is compressed with gzip.
+/// @throws IoError, also if the stream is empty
 Input load(std::istream& stream);
-/// Standard input. @throws IoError with the system's reason
+/// Reads standard input to its end, like a stream. @throws IoError with the system's reason
 Input load_standard_input();
 
-/// That a file whose name says that gzip compressed it is. @throws IoError
+/// Checks that a file with the extension .gz is compressed with gzip. @throws IoError
 void check_gzip_name(const Input& in);
 
 /// Throws IoError "cannot read 'path': what".
 [[noreturn]] void fail(const Input& in, const std::string& what);
-/// Throws ResourceExhausted "cannot read 'path': what is larger than ... MB". @param most  `room_for_input`
+/// Throws ResourceExhausted "cannot read 'path': what is larger than ... MB".
+/// @param most  limit, bytes: `room_for_input`
 [[noreturn]] void fail_too_large(const Input& in, const std::string& what, std::uint64_t most);
 /// Throws IoError "cannot read 'path', line 12: what".
 [[noreturn]] void fail_at_line(const Input& in, std::int64_t line, const std::string& what);
@@ -48,9 +50,9 @@ void check_gzip_name(const Input& in);
 /// @throws IoError when `count` vertices cannot be numbered with `Index`
 void check_vertex_count(const Input& in, std::uint64_t count);
 
-/// The text in quotes, shortened and with unprintable bytes shown as '?', fit for a message.
+/// The text in quotes for a message: long texts are shortened, and unprintable bytes become '?'.
 std::string in_quotes(std::string_view text);
-/// The path in quotes, fit for a message.
+/// The path in quotes, for a message.
 std::string quoted_path(const std::filesystem::path& path);
 
 }  // namespace ahm::io

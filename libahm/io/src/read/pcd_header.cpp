@@ -1,4 +1,4 @@
-// Points of PCD files that are text or compressed, one after the other.
+// Headers of PCD files, and points of PCD files that are text or compressed.
 #include "read/pcd_header.hpp"
 
 #include <algorithm>
@@ -13,17 +13,19 @@
 
 namespace ahm::io {
 
-/// What compressed data stands for, in blocks.
+/// Unpacks LZF data in blocks.
 class LzfStream {
  public:
-  /// @param begin  of the data in the file, which has `packed` bytes there that stand for `plain` bytes
+  /// @param begin   position of the data in the file, bytes
+  /// @param packed  compressed size, bytes
+  /// @param plain   unpacked size, bytes
   LzfStream(const ByteStream& file, std::uint64_t begin, std::uint64_t packed, std::uint64_t plain);
 
-  /// Fills room with the next bytes. @throws IoError where the data is damaged
+  /// Fills `room` with the next unpacked bytes. @throws IoError if the data is damaged
   void read(std::span<char> room);
-  /// Passes over so many bytes.
+  /// Skips unpacked bytes.
   void skip(std::uint64_t bytes);
-  /// That the data ends here as it should. @throws IoError
+  /// Checks that the data ends here. @throws IoError
   void finish();
 
  private:
@@ -32,20 +34,20 @@ class LzfStream {
   [[noreturn]] void damaged() const;
 
   ByteStream file_;
-  std::string packed_, plain_;              ///< blocks
-  std::size_t at_packed_ = 0, at_ = 0;      ///< in them
-  std::uint64_t packed_left_, plain_left_;  ///< bytes that are not in the blocks yet
+  std::string packed_, plain_;              ///< current blocks
+  std::size_t at_packed_ = 0, at_ = 0;      ///< positions in the blocks
+  std::uint64_t packed_left_, plain_left_;  ///< bytes after the blocks
 };
 
-/// 0 of the field x, 1 of y, 2 of z.
+/// 0 for the field x, 1 for y, 2 for z; nullopt for other fields.
 std::optional<std::size_t> axis_of(const PcdField& field);
 bool has_normals(const PcdHeader& header);
-/// Of uncompressed points. @throws IoError (types that are not read)
+/// The layout of uncompressed points. @throws IoError (unsupported types)
 PointRecords records_of(const Input& in, const PcdHeader& header);
 
 namespace {
 
-constexpr std::size_t block = std::size_t{1} << 18, window = 8192;  // the farthest that a repetition reaches back
+constexpr std::size_t block = std::size_t{1} << 18, window = 8192;  // window: maximum distance of a back reference
 
 }  // namespace
 
@@ -66,12 +68,12 @@ unsigned char LzfStream::next() {
   return static_cast<unsigned char>(packed_[at_packed_++]);
 }
 
-/// Unpacks a block behind the window; false at the end.
+/// Unpacks the next block after the last `window` bytes. @return false at the end
 bool LzfStream::unpack() {
   if (plain_left_ == 0) return false;
   if (plain_.size() > window) plain_.erase(0, plain_.size() - window);
   at_ = plain_.size();
-  constexpr std::size_t longest = 264;  // of a repetition
+  constexpr std::size_t longest = 264;  // length of a back reference
   while (plain_left_ > 0 && plain_.size() - at_ + longest < block) {
     const unsigned control = next();
     if (control < 32) {  // literal bytes
@@ -118,7 +120,7 @@ namespace {
 
 using Words = std::vector<std::string_view>;
 
-/// The header's lines by keyword, each allowed once.
+/// The lines of the header by keyword. Each keyword may appear once.
 struct RawHeader {
   Words fields, sizes, types, counts, viewpoint;
   std::optional<std::uint64_t> width, height, points;
@@ -139,12 +141,12 @@ PcdData to_data(const Input& in, std::int64_t line, std::string_view word) {
 }
 
 void set_once(const Input& in, std::int64_t line, const Words& words, Words& list) {
-  if (!list.empty()) fail_at_line(in, line, in_quotes(words[0]) + " is given twice");
+  if (!list.empty()) fail_at_line(in, line, in_quotes(words[0]) + " appears twice");
   list.assign(words.begin() + 1, words.end());
 }
 
 void set_once(const Input& in, std::int64_t line, const Words& words, std::optional<std::uint64_t>& number) {
-  if (number || words.size() != 2) fail_at_line(in, line, in_quotes(words[0]) + " must be given once, with one number");
+  if (number || words.size() != 2) fail_at_line(in, line, in_quotes(words[0]) + " must appear once, with one number");
   number = to_count(in, line, words[1]);
 }
 
@@ -156,7 +158,7 @@ void set_viewpoint(const Input& in, std::int64_t line, const Words& words, PcdHe
   }
 }
 
-/// Reads up to and with the line DATA, which ends with "\n" because binary data may follow.
+/// Reads the header up to the line DATA. Lines end with "\n", because binary data may follow.
 RawHeader read_lines(const Input& in, PcdHeader& header) {
   RawHeader raw;
   Words words;
@@ -164,7 +166,7 @@ RawHeader read_lines(const Input& in, PcdHeader& header) {
   for (std::int64_t line = 1;; ++line) {
     const std::size_t end = in.bytes.find('\n', position);
     if (end == std::string::npos)
-      fail_at_line(in, line, "the PCD header has no 'DATA' line; the file is cut short or no PCD file");
+      fail_at_line(in, line, "the PCD header has no 'DATA' line; the file is cut short or not a PCD file");
     split_words(std::string_view(in.bytes).substr(position, end - position), words);
     position = end + 1;
     if (words.empty() || words[0].starts_with('#') || words[0] == "VERSION") continue;
@@ -219,14 +221,14 @@ void set_fields(const Input& in, const RawHeader& raw, PcdHeader& header) {
     header.point_size += field.size * field.count;
     header.fields.push_back(std::move(field));
   }
-  if (header.point_size > largest_point) fail_at_line(in, raw.fields_line, "a point of more than 1 MB");
+  if (header.point_size > largest_point) fail_at_line(in, raw.fields_line, "a point is larger than 1 MB");
 }
 
 void check_positions(const Input& in, const RawHeader& raw, const PcdHeader& header) {
   for (const char* name : {"x", "y", "z", "normal_x", "normal_y", "normal_z", "rgb", "rgba"}) {
     const auto found = std::ranges::count(header.fields, name, &PcdField::name);
     const bool position = name[1] == '\0';
-    if (found > 1) fail_at_line(in, raw.fields_line, std::string("field '") + name + "' is given twice");
+    if (found > 1) fail_at_line(in, raw.fields_line, std::string("field '") + name + "' appears twice");
     if (position && found == 0) fail_at_line(in, raw.fields_line, std::string("there is no field '") + name + "'");
     const auto field = std::ranges::find(header.fields, name, &PcdField::name);
     if (position && field->count != 1)
@@ -234,7 +236,7 @@ void check_positions(const Input& in, const RawHeader& raw, const PcdHeader& hea
   }
 }
 
-/// WIDTH times HEIGHT and POINTS say the same; either can do without the other.
+/// Sets the number of points. WIDTH times HEIGHT must equal POINTS; either may be missing.
 void set_points(const Input& in, const RawHeader& raw, PcdHeader& header) {
   if (!raw.width && !raw.points) fail_at_line(in, header.body_line - 1, "the PCD header has neither WIDTH nor POINTS");
   header.height = raw.width ? raw.height.value_or(1) : 1;
@@ -267,18 +269,17 @@ PcdHeader parse_pcd_header(const Input& in) {
 }
 
 void check_pcd_size(const Input& in, const PcdHeader& header) {
-  const std::uint64_t plain = header.points * header.point_size;  // below 2^31 times 2^20
+  const std::uint64_t plain = header.points * header.point_size;  // no overflow: less than 2^31 * 2^20
   if (plain > in.size() - header.body) fail_size(in, header, plain);
 }
 
 std::array<std::uint32_t, 2> pcd_sizes(const Input& in, const PcdHeader& header) {
   const std::uint64_t plain = header.points * header.point_size;
   if (std::ranges::find(header.fields, "_", &PcdField::name) != header.fields.end()) {
-    // PCL's writer drops padding when it compresses, and its reader assumes that all do.
-    fail_at_byte(in, header.body,
-                 "compressed data with padding fields '_' has no agreed meaning; save it uncompressed");
+    // PCL's writer omits padding in compressed data, and its reader assumes that every writer does.
+    fail_at_byte(in, header.body, "compressed data with padding fields '_' is ambiguous; save it uncompressed");
   }
-  std::array<std::uint32_t, 2> sizes{};  // compressed, plain
+  std::array<std::uint32_t, 2> sizes{};  // compressed, uncompressed
   const std::uint64_t left = in.size() - header.body;
   if (in.bytes.size() - header.body < sizeof sizes) fail_size(in, header, sizeof sizes);
   std::memcpy(sizes.data(), in.bytes.data() + header.body, sizeof sizes);
@@ -292,13 +293,13 @@ std::array<std::uint32_t, 2> pcd_sizes(const Input& in, const PcdHeader& header)
                  "the uncompressed size " + std::to_string(sizes[1]) + " is not that of " +
                      std::to_string(header.points) + " points: " + std::to_string(plain));
   }
-  // Three bytes of LZF stand for at most 264, so that a larger size cannot be true and need not be allocated.
+  // Three bytes of LZF unpack to at most 264 bytes. Reject larger sizes before allocating memory for them.
   if (plain / 88 > sizes[0])
     fail_at_byte(in, header.body, "the compressed size " + std::to_string(sizes[0]) + " is too small");
   return sizes;
 }
 
-/// Every word must be a number and every line must have all of them: PCL takes "1,5" as 1 and 1e400 as infinity.
+/// Checks every word, because PCL reads "1,5" as 1 and 1e400 as infinity.
 void read_pcd_text(const Input& in, const PcdHeader& header, Lines& lines,
                    const std::function<void(const std::vector<std::string_view>&)>& use) {
   if (header.points > in.size() - header.body) fail_size(in, header, 2 * header.points);
@@ -308,12 +309,12 @@ void read_pcd_text(const Input& in, const PcdHeader& header, Lines& lines,
   Words words;
   while (lines.next_filled()) {
     if (point++ == header.points)
-      fail_at_line(in, lines.number(), "more lines than the " + std::to_string(header.points) + " points");
+      fail_at_line(in, lines.number(), "the file has more lines than points (" + std::to_string(header.points) + ")");
     split_words(lines.line(), words);
     for (std::string_view word : words) real_or_fail(in, lines.number(), word);
     if (words.size() != per_point) {
       fail_at_line(in, lines.number(),
-                   "found " + std::to_string(words.size()) + " numbers, expected " + std::to_string(per_point));
+                   "expected " + std::to_string(per_point) + " numbers, found " + std::to_string(words.size()));
     }
     use(words);
   }
@@ -359,7 +360,7 @@ std::string full_header(const PcdHeader& header) {
 
 namespace {
 
-/// As a number of the field's own type, which must hold it.
+/// The word as a number, converted to the type of the field. Fails if the type cannot represent it.
 double value_in(const Input& in, std::int64_t line, const PcdField& field, std::string_view word) {
   const double value = to_real(word).value();
   if (field.type != 'F') {
@@ -374,7 +375,7 @@ double value_in(const Input& in, std::int64_t line, const PcdField& field, std::
   if (word.starts_with('+')) word.remove_prefix(1);
   float rounded = 0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), rounded);
-  return error == std::errc{} ? rounded : static_cast<float>(value);  // beyond all floats: infinite or zero
+  return error == std::errc{} ? rounded : static_cast<float>(value);  // outside the range of floats: infinity or zero
 }
 
 void take_text(const ByteStream& file, const PcdHeader& header, const TakePoint& take) {
@@ -393,7 +394,7 @@ void take_text(const ByteStream& file, const PcdHeader& header, const TakePoint&
   });
 }
 
-/// The values of a field stand together, those of one field after those of another: the data is unpacked at three places at once.
+/// Compressed data contains the values field by field. Three streams unpack it in parallel, one at each of x, y and z.
 void take_compressed(const ByteStream& file, const PcdHeader& header, const PointRecords& records,
                      const TakePoint& take) {
   const auto sizes = pcd_sizes(file.head(), header);
@@ -429,7 +430,7 @@ bool take_pcd_points(const ByteStream& file, const TakePoint& take) {
 
 namespace {
 
-/// None for whole numbers of 8 bytes.
+/// The type of a field; nullopt for integers of 8 bytes.
 std::optional<PlyType> type_of(const PcdField& field) {
   constexpr PlyType whole[] = {PlyType::int8, PlyType::int16, PlyType::int32},
                     natural[] = {PlyType::uint8, PlyType::uint16, PlyType::uint32};
@@ -457,7 +458,7 @@ PointRecords records_of(const Input& in, const PcdHeader& header) {
   for (const PcdField& field : header.fields) {
     if (const auto axis = axis_of(field)) {
       const auto type = type_of(field);
-      if (!type) fail(in, "its coordinates are whole numbers of 8 bytes; make them real ones");
+      if (!type) fail(in, "its coordinates are integers of 8 bytes; convert them to floats");
       records.at[*axis] = records.stride;
       records.type[*axis] = *type;
     }

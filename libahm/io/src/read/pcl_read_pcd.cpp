@@ -1,6 +1,6 @@
-// PCL reads PCD: its format. PCL trusts the header and reads "1,5" as 1, so check_pcd goes first; PCL then works on what
-// check_pcd made of the header and of text, or on the same bytes in memory, never on the file again. This file must not be compiled with -march flags: PCL's Eigen types
-// cross the border.
+// Reads PCD files with PCL. PCL does not check the header and reads "1,5" as 1, so check_pcd checks the file first. PCL then parses
+// the header and text that check_pcd returned, or the same binary data in memory; it does not open the file.
+// Do not compile this file with -march flags: its interface to PCL contains Eigen types.
 #include "read/pcl_read_pcd.hpp"
 
 #include <pcl/PCLPointCloud2.h>
@@ -21,8 +21,7 @@
 
 namespace ahm::io {
 
-/// Silences PCL's console while it lives. The level is one for the whole process, so only one thread may change it at a
-/// time.
+/// Disables PCL's console output during its lifetime. The level is global, so only one thread may change it at a time.
 class PclQuiet {
  public:
   PclQuiet() : lock_(mutex()), level_(pcl::console::getVerbosityLevel()) {
@@ -82,11 +81,11 @@ double load_value(const Input& in, const PCLPointField& field, const std::uint8_
     case PCLPointField::FLOAT64:
       return load_as<double>(bytes);
     default:
-      fail(in, "field '" + field.name + "' has a type PCL does not know");
+      fail(in, "field '" + field.name + "' has a type that PCL does not support");
   }
 }
 
-/// @param text  of the points, taken
+/// @param text  the points of a text file; moved from
 PCLPointCloud2 read_with_pcl(const Input& in, const PcdHeader& header, std::string&& text) {
   const PclQuiet quiet;
   pcl::PCDReader reader;
@@ -98,7 +97,7 @@ PCLPointCloud2 read_with_pcl(const Input& in, const PcdHeader& header, std::stri
   unsigned int position = 0;
   std::istringstream head(full_header(header));
   int error = reader.readHeader(head, cloud, origin, orientation, version, data, position);
-  // Before PCL copies that many bytes out of the file: it must have understood the header as check_pcd did.
+  // PCL's sizes must match those of check_pcd before PCL copies so many bytes.
   if (error == 0 && (cloud.point_step != header.point_size || cloud.data.size() != header.points * header.point_size))
     error = -1;
   if (error == 0 && header.data == PcdData::ascii) {
@@ -113,7 +112,7 @@ PCLPointCloud2 read_with_pcl(const Input& in, const PcdHeader& header, std::stri
   return cloud;
 }
 
-/// What PCL made of the file must be what the header said.
+/// Checks that the cloud from PCL matches the header.
 void check_result(const Input& in, const PcdHeader& header, const PCLPointCloud2& cloud) {
   const std::uint64_t points = std::uint64_t{cloud.width} * cloud.height;
   bool inside = points == header.points && cloud.data.size() >= points * cloud.point_step;
@@ -143,7 +142,7 @@ bool has_a_role(const PCLPointField& field) {
   return std::ranges::find(roles, field.name) != std::end(roles);
 }
 
-/// Whether doubles hold them all: whole numbers of 64 bits may be larger.
+/// Whether doubles represent all values exactly; integers of 64 bits may be too large.
 bool exact(const PCLPointField& field, std::span<const double> values) {
   constexpr double largest = 9007199254740992;  // 2^53
   const bool wide = field.datatype == PCLPointField::INT64 || field.datatype == PCLPointField::UINT64;
@@ -151,7 +150,7 @@ bool exact(const PCLPointField& field, std::span<const double> values) {
 }
 
 void read_properties(const Input& in, const PCLPointCloud2& cloud, Geometry& g) {
-  constexpr std::size_t most_columns = 4096;  // bounds the search for equal names
+  constexpr std::size_t most_columns = 4096;  // limits the time of the search for equal names
   std::size_t columns = 0;
   for (const PCLPointField& field : cloud.fields) {
     if (has_a_role(field)) continue;
@@ -170,7 +169,7 @@ void read_properties(const Input& in, const PCLPointCloud2& cloud, Geometry& g) 
   }
 }
 
-/// PCL packs colors as 0xAARRGGBB into four bytes, which may be declared a float.
+/// Reads colors, which PCL packs into four bytes as 0xAARRGGBB; the type of the field may be float.
 void read_colors(const PCLPointCloud2& cloud, Geometry& g) {
   const PCLPointField* field = find(cloud, "rgb") ? find(cloud, "rgb") : find(cloud, "rgba");
   if (field == nullptr) return;

@@ -1,5 +1,5 @@
 /// \file
-/// PCD files through PCL, whose headers stay out of this one.
+/// Reads PCD files with PCL. Does not include PCL's headers.
 #pragma once
 
 #include "ahm/io/geometry.hpp"

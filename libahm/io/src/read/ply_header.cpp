@@ -59,8 +59,8 @@ PlyProperty parse_property(const Input& in, std::int64_t line, const std::vector
   return {std::string(words[4]), parse_type(in, line, words[3]), count_type};
 }
 
-/// Walks the header's lines. Only the first line tells whether lines end with a lone "\r": in a binary file the payload
-/// may hold any byte, so that nothing behind "end_header" and its own line end may be looked at.
+/// Reads the lines of the header. The end of the first line determines whether lines end with a lone "\r". Bytes after "end_header"
+/// and its line end are not examined, because binary data may contain any byte.
 class HeaderLines {
  public:
   explicit HeaderLines(const Input& in) : in_(in) {
@@ -75,7 +75,7 @@ class HeaderLines {
     const std::size_t end = in_.bytes.find(end_, position);
     ++number;
     if (end == std::string::npos || end - position > longest) {
-      fail_at_line(in_, number, "the PLY header has no 'end_header'; the file is cut short or no PLY file");
+      fail_at_line(in_, number, "the PLY header has no 'end_header'; the file is cut short or not a PLY file");
     }
     std::string_view line = std::string_view(in_.bytes).substr(position, end - position);
     position = end + 1;
@@ -91,10 +91,9 @@ class HeaderLines {
   char end_;
 };
 
-/// Row by row: an element that cannot fit into the bytes behind the header is refused before anything is allocated for
-/// it.
+/// Rejects elements that are larger than the rest of the file, before memory is allocated for them.
 void check_against_size(const Input& in, const PlyHeader& header) {
-  // A text file may end without a line end, so that one separator is missing.
+  // The last line of a text file may have no line end: one separator is missing.
   std::uint64_t left = in.size() - header.body + (header.format == PlyFormat::ascii ? 1 : 0);
   for (const PlyElement& element : header.elements) {
     const bool text = header.format == PlyFormat::ascii;
@@ -102,15 +101,15 @@ void check_against_size(const Input& in, const PlyHeader& header) {
     if (least == 0) continue;
     if (element.count > left / least) {
       fail_at_line(in, element.line,
-                   "element '" + element.name + "' promises " + std::to_string(element.count) + " items of at least " +
-                       std::to_string(least) + " bytes, but only " + std::to_string(left) +
+                   "element '" + element.name + "' should have " + std::to_string(element.count) +
+                       " items of at least " + std::to_string(least) + " bytes, but only " + std::to_string(left) +
                        " bytes are left; the file is cut short or its header is wrong");
     }
     left -= element.count * least;
   }
 }
 
-/// A property that is read must be there once, in one case of its letters; others may be named as they like.
+/// Rejects elements that are declared twice, and duplicates (ignoring case) of properties that the reader uses.
 void check_names(const Input& in, const PlyHeader& header) {
   static constexpr std::array read_names = {
       "x"sv, "y"sv, "z"sv, "nx"sv, "ny"sv, "nz"sv, "red"sv, "green"sv, "blue"sv, "vertex_indices"sv, "vertex_index"sv};
@@ -171,7 +170,7 @@ std::size_t PlyElement::fixed_size() const noexcept {
 }
 
 PlyHeader parse_ply_header(const Input& in) {
-  constexpr std::size_t most_properties = 4096;  // bounds the quadratic search for equal names
+  constexpr std::size_t most_properties = 4096;  // limits the quadratic search for equal names
   HeaderLines lines(in);
   if (!in.bytes.starts_with("ply") || lines.next() != "ply") fail_at_line(in, 1, "a PLY file begins with a line 'ply'");
 
@@ -193,7 +192,8 @@ PlyHeader parse_ply_header(const Input& in) {
       if (header.elements.empty()) fail_at_line(in, lines.number, "a property before the first 'element' line");
       header.elements.back().properties.push_back(parse_property(in, lines.number, words));
     } else if (header.elements.empty() || (has_format && header.format == PlyFormat::ascii)) {
-      ++header.ignored_lines;  // a comment without its word; where a misspelt property would shift nothing unnoticed
+      ++header
+            .ignored_lines;  // probably a comment without its keyword; in text, a misspelled property causes an error later
     } else {
       fail_at_line(in, lines.number, "unexpected " + in_quotes(words[0]) + " in the PLY header");
     }
@@ -239,11 +239,12 @@ std::optional<PointRecords> ply_records(const Input& in) {
   if (header.format == PlyFormat::ascii) return std::nullopt;
   for (const PlyElement& element : header.elements) {
     if (element.name == "vertex") {
-      if (element.has_list()) fail(in, "its vertices have lists, so that points cannot be found without reading all");
+      if (element.has_list()) fail(in, "its vertices have lists; such points cannot be streamed");
       find_coordinates(in, element, records);
       return records;
     }
-    if (element.has_list()) fail(in, "lists of element '" + element.name + "' stand before its vertices");
+    if (element.has_list())
+      fail(in, "lists of element '" + element.name + "' come before its vertices; such points cannot be streamed");
     records.begin += element.count * element.fixed_size();
   }
   fail(in, "it has no element 'vertex'");

@@ -1,5 +1,5 @@
 /// \file
-/// The header of a PLY file: elements with their properties, checked against the size of the file.
+/// The header of a PLY file: elements and their properties, checked against the file size.
 #pragma once
 
 #include <algorithm>
@@ -25,17 +25,17 @@ bool is_whole(PlyType type) noexcept;
 
 struct PlyProperty {
   std::string name;
-  PlyType type;                       ///< of the value, or of a list's values
-  std::optional<PlyType> count_type;  ///< set for a list
+  PlyType type;                       ///< type of the value, or of the values of a list
+  std::optional<PlyType> count_type;  ///< type of the count of a list; nullopt: not a list
 };
 
 struct PlyElement {
   std::string name;
   std::uint64_t count = 0;
   std::vector<PlyProperty> properties;
-  std::int64_t line = 0;  ///< where the header declares it
+  std::int64_t line = 0;  ///< number of the header line that declares the element
 
-  /// Position of the first property with this name (lower case) in any case of its letters, nullopt when there is none.
+  /// Index of the first property with this name, ignoring case; nullopt if there is none. @param property  in lower case
   std::optional<std::size_t> find(std::string_view property) const;
   bool has_list() const noexcept;
   /// Bytes of one item when every list is empty.
@@ -45,15 +45,15 @@ struct PlyElement {
 struct PlyHeader {
   PlyFormat format = PlyFormat::ascii;
   std::vector<PlyElement> elements;
-  std::size_t ignored_lines = 0;  ///< that have no meaning; text, or before the first element
-  std::size_t body = 0;           ///< position of the first byte behind the header
-  std::int64_t body_line = 0;     ///< number of the first line behind the header
+  std::size_t ignored_lines = 0;  ///< lines without a meaning, in text files or before the first element
+  std::size_t body = 0;           ///< position of the first byte after the header
+  std::int64_t body_line = 0;     ///< number of the first line after the header
 };
 
-/// @throws IoError naming the line
+/// @throws IoError with the line
 PlyHeader parse_ply_header(const Input& in);
 
-/// Whether the bytes of its values stand in the other order than in memory.
+/// Whether the byte order of the file differs from the byte order of the memory.
 inline bool is_swapped(PlyFormat format) noexcept {
   return (format == PlyFormat::big_endian) != (std::endian::native == std::endian::big);
 }

@@ -23,10 +23,10 @@ Vec3 load_point(const PointRecords& r, const char* bytes) {
 }
 
 [[noreturn]] void fail_short(const Input& in, std::uint64_t point, std::uint64_t count) {
-  fail(in, "it ends at or after point " + std::to_string(point) + " of " + std::to_string(count));
+  fail(in, "the file ends at or after point " + std::to_string(point) + " of " + std::to_string(count));
 }
 
-/// Hands over the points of records that are packed.
+/// Reads fixed-size records of a compressed file and passes their points to `take`.
 bool unpack(const ByteStream& file, const PointRecords& r, const TakePoint& take) {
   ByteStream bytes(file, r.begin);
   std::string buffer(block * r.stride, '\0');
@@ -51,7 +51,7 @@ const Format& format_of(const std::filesystem::path& path) {
   throw IoError(
       "no_cloud",
       "cannot read " + quoted_path(path) + ": points are read block by block from " + list_of(known, "or") + " files",
-      "convert it to one");
+      "convert it to one of these");
 }
 
 }  // namespace
@@ -60,7 +60,7 @@ struct PointStream::Impl {
   Input in;  ///< for messages
   std::optional<RegularFile> file;
   PointRecords records;
-  std::uint64_t next = 0;  ///< number of a point
+  std::uint64_t next = 0;  ///< index of the next point
   std::vector<char> buffer;
 };
 

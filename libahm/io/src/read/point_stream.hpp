@@ -1,5 +1,5 @@
 /// \file
-/// Where the points of a binary file are: records of one size, one after the other.
+/// Layout of the points of a binary file: consecutive records of equal size.
 #pragma once
 
 #include <array>
@@ -15,24 +15,25 @@
 namespace ahm::io {
 
 struct PointRecords {
-  std::uint64_t begin = 0, count = 0;  ///< bytes before the first one; how many
-  std::size_t stride = 0;              ///< bytes of one
-  std::array<std::size_t, 3> at{};     ///< of x, y, z in it
+  std::uint64_t begin = 0, count = 0;  ///< position of the first record, bytes; number of records
+  std::size_t stride = 0;              ///< size of a record, bytes
+  std::array<std::size_t, 3> at{};     ///< offsets of x, y, z in a record, bytes
   std::array<PlyType, 3> type{};
-  bool is_swapped = false;  ///< `ahm::io::is_swapped`
-  bool is_scaled = false;   ///< coordinates are numbers times `scale` plus `offset`
+  bool is_swapped = false;  ///< the byte order differs from that of the memory
+  bool is_scaled = false;   ///< coordinates are stored numbers * `scale` + `offset`
   Vec3 scale{}, offset{};
-  bool has_normals = false;  ///< every point has one
+  bool has_normals = false;  ///< every point has a normal
 };
 
-/// Gets points one after the other.
+/// Receives points one at a time.
 using TakePoint = std::function<void(const Vec3&)>;
 
-/// Of these formats, from the beginning of a file; nullopt where it is text or compressed. @throws IoError
+/// The layout of the points, from the beginning of a PLY, LAS or PCD file; nullopt for text and compressed data. @throws IoError
 std::optional<PointRecords> ply_records(const Input& in);
 std::optional<PointRecords> las_records(const Input& in);
 std::optional<PointRecords> pcd_records(const Input& in);
-/// Of PCD files that are text or compressed. @return whether points have normals @throws IoError
+/// Reads a PCD file with text or compressed data and passes its points to `take`. @return whether they have normals
+/// @throws IoError
 bool take_pcd_points(const ByteStream& file, const TakePoint& take);
 
 }  // namespace ahm::io

@@ -8,30 +8,30 @@
 namespace ahm::io {
 namespace {
 
-/// Files that people have and that are not read, and what helps.
+/// Common file types that are not supported, and what to do instead.
 struct Refused {
   std::string_view extension, reason;
 };
 
 constexpr Refused refused[] = {
-    {".zip", "archives are not read; unpack it first (unzip)"},
-    {".xz", "of compressed files only .gz is read; unpack it first (unxz -k)"},
-    {".bz2", "of compressed files only .gz is read; unpack it first (bunzip2 -k)"},
-    {".zst", "of compressed files only .gz is read; unpack it first (unzstd)"},
+    {".zip", "archives are not supported; unpack it first (unzip)"},
+    {".xz", "only .gz compression is supported; unpack it first (unxz -k)"},
+    {".bz2", "only .gz compression is supported; unpack it first (bunzip2 -k)"},
+    {".zst", "only .gz compression is supported; unpack it first (unzstd)"},
     {".vtp", "this build has no pugixml, which reads .vtp files; save it as .vtk or .ply in ParaView"},
-    {".vtu", "of VTK's files only .vtp and .vtk are read; save its surface as .vtp in ParaView"},
-    {".pvtp", "files in parts are not read; save it as .vtp in ParaView"},
-    {".vtm", "files in parts are not read; save its surface as .vtp in ParaView"},
-    {".jsonl", "JSON lines are written, not read; write .csv, which is"},
-    {".laz", "LAZ, compressed LAS, is not read; convert it to .las with laszip, las2las or pdal translate"},
-    {".e57", "E57 is not read; convert it to .ply, .las or .pts with CloudCompare or pdal translate"},
+    {".vtu", "of VTK's formats, only .vtp and .vtk are supported; save its surface as .vtp in ParaView"},
+    {".pvtp", "files in several parts are not supported; save it as .vtp in ParaView"},
+    {".vtm", "files in several parts are not supported; save its surface as .vtp in ParaView"},
+    {".jsonl", "JSON lines can be written, but not read; use .csv"},
+    {".laz", "LAZ (compressed LAS) is not supported; convert it to .las with laszip, las2las or pdal translate"},
+    {".e57", "E57 is not supported; convert it to .ply, .las or .pts with CloudCompare or pdal translate"},
 };
 
 [[noreturn]] void fail(const std::filesystem::path& path, const std::string& what) {
   throw IoError("cannot read " + quoted_path(path) + ": " + what);
 }
 
-/// The format of files with this extension, which this build reads. @throws IoError
+/// The format of an extension. @throws IoError if this build cannot read it
 const Format& format_to_read(const std::filesystem::path& path, const std::string& extension) {
   std::error_code none;
   if (std::filesystem::is_directory(path, none)) fail(path, "it is a folder, not a file");
@@ -44,12 +44,12 @@ const Format& format_to_read(const std::filesystem::path& path, const std::strin
   for (const auto& [name, reason] : refused)
     if (extension == name) fail(path, std::string(reason));
   throw IoError("unknown_type",
-                "cannot read " + quoted_path(path) + ": unknown file type " + in_quotes(extension) + "; known are " +
-                    list_of(extensions(Use::read)) + ", each also as .gz",
-                "rename it, or name its format");
+                "cannot read " + quoted_path(path) + ": unknown file type " + in_quotes(extension) +
+                    "; known types are " + list_of(extensions(Use::read)) + ", each also as .gz",
+                "rename it, or specify its format");
 }
 
-/// That of the name; of a compressed file that before .gz.
+/// The extension of the file name; for compressed files, the extension before .gz.
 std::string extension_of(const std::filesystem::path& path) {
   const std::string extension = lower_extension(path);
   return extension == ".gz" ? lower_extension(path.stem()) : extension;
@@ -60,18 +60,18 @@ Geometry read_by_extension(const std::filesystem::path& path, std::string extens
   return format_to_read(path, extension).read(load(path));
 }
 
-/// By the extension, or else by the first bytes.
+/// Reads input without a name. The format follows from `extension`, or if that is empty, from the first bytes.
 Geometry read_unnamed(const Input& in, std::string extension) {
   if (extension.empty()) {
     const Format* format = recognized_format(in.bytes);
     if (format == nullptr)
-      throw IoError("unknown_bytes", "cannot read '-': the first bytes tell no file type", "name its extension");
+      throw IoError("unknown_bytes", "cannot read '-': its first bytes match no file type", "specify its extension");
     extension = format->extensions.front();
   }
   return format_to_read(in.path, extension).read(in);
 }
 
-/// The one law every format shares: a face names vertices that exist.
+/// Checks that the vertices of all faces exist, in any format.
 void check_faces(const std::filesystem::path& path, const Geometry& g) {
   for (std::size_t f = 0; f < g.face_count(); ++f) {
     for (const Index vertex : g.face(f)) {

@@ -7,30 +7,30 @@
 namespace ahm::io {
 namespace {
 
-constexpr std::size_t block_size = std::size_t{1} << 18;  // of a file that is read as its lines are
+constexpr std::size_t block_size = std::size_t{1} << 18;  // bytes read from a file at a time
 
 constexpr bool is_blank(char c) noexcept { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
 
-/// from_chars knows no leading plus sign, files do.
+/// Removes a leading plus sign, which from_chars does not accept.
 std::string_view without_plus(std::string_view word) noexcept {
   const bool plus = word.size() > 1 && word[0] == '+' && word[1] != '-' && word[1] != '+';
   return plus ? word.substr(1) : word;
 }
 
-/// A comment begins a word: the sign within "1.#INF" does not hide that this is no number.
+/// Position of the comment character at the beginning of a word. Inside a word, as in "1.#INF", it does not start a comment.
 std::size_t find_comment(std::string_view line, char comment) noexcept {
   std::size_t at = line.find(comment);
   while (at != std::string_view::npos && at > 0 && !is_blank(line[at - 1])) at = line.find(comment, at + 1);
   return at;
 }
 
-/// Whether a number out of range is one too small: a short mantissa with a negative exponent.
+/// Whether a number is out of range because it is too small: a short mantissa with a negative exponent.
 bool is_underflow(std::string_view word) noexcept {
   const std::size_t exponent = word.find_first_of("eE");
   return exponent < 64 && word.substr(exponent + 1).starts_with('-');
 }
 
-/// The word with a point in place of its first comma.
+/// The word with its first comma replaced by a point.
 std::string with_point(std::string_view word) {
   std::string result(word);
   if (const std::size_t comma = result.find(','); comma != std::string::npos) result[comma] = '.';
@@ -56,7 +56,7 @@ Lines::Lines(const ByteStream& file, std::uint64_t begin, std::int64_t first_num
   if (returns) end_ = '\r';
 }
 
-/// Puts more of the file behind what is left of the text; false at its end.
+/// Discards the text before the current position and appends the next block of the file. @return false at the end
 bool Lines::read_on() {
   constexpr std::size_t longest = std::size_t{1} << 26;
   if (!file_) return false;

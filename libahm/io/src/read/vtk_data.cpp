@@ -24,7 +24,7 @@ double load_number(std::string_view bytes, std::size_t position, bool big_endian
 }
 
 template <class T>
-constexpr VtkType type_of = {sizeof(T), std::is_integral_v<T>, load_number<T>};
+constexpr VtkType vtk_type = {sizeof(T), std::is_integral_v<T>, load_number<T>};
 
 struct NamedType {
   std::string_view name;
@@ -32,30 +32,30 @@ struct NamedType {
 };
 
 constexpr NamedType types[] = {
-    {"int8", type_of<std::int8_t>},
-    {"uint8", type_of<std::uint8_t>},
-    {"int16", type_of<std::int16_t>},
-    {"uint16", type_of<std::uint16_t>},
-    {"int32", type_of<std::int32_t>},
-    {"uint32", type_of<std::uint32_t>},
-    {"int64", type_of<std::int64_t>},
-    {"uint64", type_of<std::uint64_t>},
-    {"float32", type_of<float>},
-    {"float64", type_of<double>},
-    {"char", type_of<std::int8_t>},
-    {"signed_char", type_of<std::int8_t>},
-    {"unsigned_char", type_of<std::uint8_t>},
-    {"short", type_of<std::int16_t>},
-    {"unsigned_short", type_of<std::uint16_t>},
-    {"int", type_of<std::int32_t>},
-    {"unsigned_int", type_of<std::uint32_t>},
-    {"long", type_of<std::int64_t>},
-    {"unsigned_long", type_of<std::uint64_t>},
-    {"vtkidtype", type_of<std::int32_t>},  // as VTK writes and reads it, whatever it is in memory
-    {"vtktypeint64", type_of<std::int64_t>},
-    {"vtktypeuint64", type_of<std::uint64_t>},
-    {"float", type_of<float>},
-    {"double", type_of<double>},
+    {"int8", vtk_type<std::int8_t>},
+    {"uint8", vtk_type<std::uint8_t>},
+    {"int16", vtk_type<std::int16_t>},
+    {"uint16", vtk_type<std::uint16_t>},
+    {"int32", vtk_type<std::int32_t>},
+    {"uint32", vtk_type<std::uint32_t>},
+    {"int64", vtk_type<std::int64_t>},
+    {"uint64", vtk_type<std::uint64_t>},
+    {"float32", vtk_type<float>},
+    {"float64", vtk_type<double>},
+    {"char", vtk_type<std::int8_t>},
+    {"signed_char", vtk_type<std::int8_t>},
+    {"unsigned_char", vtk_type<std::uint8_t>},
+    {"short", vtk_type<std::int16_t>},
+    {"unsigned_short", vtk_type<std::uint16_t>},
+    {"int", vtk_type<std::int32_t>},
+    {"unsigned_int", vtk_type<std::uint32_t>},
+    {"long", vtk_type<std::int64_t>},
+    {"unsigned_long", vtk_type<std::uint64_t>},
+    {"vtkidtype", vtk_type<std::int32_t>},  // 32 bits in VTK's files, even if wider in memory
+    {"vtktypeint64", vtk_type<std::int64_t>},
+    {"vtktypeuint64", vtk_type<std::uint64_t>},
+    {"float", vtk_type<float>},
+    {"double", vtk_type<double>},
 };
 
 std::string lower(std::string text) {
@@ -63,15 +63,15 @@ std::string lower(std::string text) {
   return text;
 }
 
-/// As short as it can be told.
+/// The shortest decimals of a number.
 std::string shown(double number) {
   std::array<char, 32> text;
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), number).ptr};
 }
 
-/// Whether all of them are what stood in the file.
+/// Whether all values are exactly those of the file.
 bool exact(const VtkArray& array) {
-  constexpr double largest = 9007199254740992;  // 2^53, beyond which doubles leave out whole numbers
+  constexpr double largest = 9007199254740992;  // 2^53: doubles represent smaller integers exactly
   return !array.whole || std::ranges::all_of(array.values, [](double x) { return std::abs(x) < largest; });
 }
 
@@ -81,7 +81,7 @@ class Joiner {
 
   Geometry join() {
     std::erase_if(pieces_, [](const VtkPiece& piece) { return piece.points == 0; });
-    if (pieces_.empty()) fail(in_, "it holds no vertex");
+    if (pieces_.empty()) fail(in_, "it contains no vertex");
     std::uint64_t points = 0, lines = 0;
     bool faces = false, cell_data = false;
     for (const VtkPiece& piece : pieces_) {
@@ -154,7 +154,7 @@ class Joiner {
     }
   }
 
-  /// An array's numbers of all pieces; none where one has it not, or otherwise.
+  /// The numbers of an array in all pieces; nullopt if a piece does not have the array, or has it with another width or inexact values.
   std::optional<std::vector<double>> gathered(const std::string& name, std::size_t width) {
     std::vector<double> values;
     for (const VtkPiece& piece : pieces_) {

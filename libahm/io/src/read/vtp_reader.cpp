@@ -1,5 +1,5 @@
-// pugixml reads the XML, the arrays are read here: VTK's own readers (9.1) hand out memory that was never written where a
-// number is damaged ("1,5"), take 1e400 for the largest double and corners for what they say, with no error that a caller could see.
+// Reads the XML with pugixml and decodes the arrays itself. VTK's own readers (9.1) return uninitialized memory after an invalid number
+// ("1,5"), read 1e400 as the largest double, and do not check corners. They report no error in these cases.
 #include "read/vtp_reader.hpp"
 
 #include <algorithm>
@@ -19,30 +19,30 @@
 
 namespace ahm::io {
 
-/// How the binary arrays of a file are stored.
+/// Encoding of the binary arrays of a file.
 struct VtpEncoding {
   bool big_endian = false;
-  bool wide_header = false;  ///< lengths of 8 bytes instead of 4
-  bool compressed = false;   ///< by zlib, block by block
+  bool wide_header = false;  ///< lengths have 8 bytes instead of 4
+  bool compressed = false;   ///< compressed with zlib, block by block
 };
 
-/// The bytes of one array, which begin where `text` begins and may be followed by others.
-/// @param base64  or else raw
+/// Decodes the array at the beginning of `text`; other arrays may follow.
+/// @param base64  whether the encoding is base64, else raw
 /// @param what    the array's name, for messages
-/// @throws IoError where they do not fit into the text, or are damaged
-/// @throws ResourceExhausted where unpacked they would fill more than a third of the memory that is free
+/// @throws IoError if the array does not fit into the text, or is damaged
+/// @throws ResourceExhausted if the unpacked array would use more than a third of the free memory
 std::string decode_vtp_array(const Input& in, std::string_view text, bool base64, const VtpEncoding& encoding,
                              const std::string& what);
 
 namespace {
 
-/// Bytes one after the other, raw or out of base64, in which padding may stand wherever a part was encoded for itself.
+/// Reads bytes sequentially, raw or in base64. Padding may occur inside base64 text, at the end of a separately encoded part.
 class Bytes {
  public:
   Bytes(const Input& in, std::string_view text, bool base64, const std::string& what)
       : in_(in), text_(text), base64_(base64), what_(what) {}
 
-  /// The most bytes that can follow.
+  /// Maximum number of bytes that can follow.
   std::uint64_t left() const { return base64_ ? spare_.size() + text_.size() / 4 * 3 : text_.size(); }
 
   std::string take(std::uint64_t count) {
@@ -81,7 +81,7 @@ class Bytes {
       if (c == ' ' || (c >= '\t' && c <= '\r')) continue;
       const std::size_t digit = c == '=' && count >= 2 ? 0 : digits.find(c);
       if (digit == std::string_view::npos || (padding > 0 && c != '='))
-        fail(in_, what_ + " is not base64: it holds " + in_quotes(std::string_view(&c, 1)));
+        fail(in_, what_ + " is not base64: it contains " + in_quotes(std::string_view(&c, 1)));
       padding += c == '=';
       bits = bits << 6 | static_cast<std::uint32_t>(digit);
       ++count;
@@ -94,21 +94,22 @@ class Bytes {
   std::string_view text_;
   bool base64_;
   const std::string& what_;
-  std::string spare_;  ///< decoded, and not taken yet
+  std::string spare_;  ///< decoded bytes that have not been taken
 };
 
-/// Number of blocks, their size, the size of the last one where it is another; the compressed size of each; the blocks.
+/// Unpacks a compressed array. Its format: number of blocks, size of a block, size of the last block (0 if equal), compressed sizes of
+/// the blocks, and the blocks.
 std::string unpack(const Input& in, Bytes& bytes, const VtpEncoding& encoding, const std::string& what) {
   const std::uint64_t count = bytes.take_length(encoding), size = bytes.take_length(encoding),
                       last = bytes.take_length(encoding);
   if (count == 0) return {};
-  constexpr std::uint64_t most_packed = 1032;  // zlib makes nothing smaller than a 1032nd of it
+  constexpr std::uint64_t most_packed = 1032;  // maximum compression ratio of zlib
   const std::uint64_t most = free_memory() / 3;
   if (count > bytes.left() || last > size || (size > 0 && count - 1 > most_packed * bytes.left() / size))
     bytes.fail_short();
   if (size > 0 && count > most / size)
     throw ResourceExhausted("cannot read " + quoted_path(in.path) + ": " + what +
-                            " would fill more than a third of the memory that is free");
+                            " would use more than a third of the free memory");
   const std::uint64_t all = (count - 1) * size + (last == 0 ? size : last);
   if (all > most_packed * bytes.left()) bytes.fail_short();
   std::vector<std::uint64_t> packed(count);
@@ -141,9 +142,9 @@ class VtpReader {
   Geometry read() {
     parse();
     const pugi::xml_node file = document_.child("VTKFile");
-    if (!file) fail(in_, "there is no element VTKFile");
+    if (!file) fail(in_, "it has no element VTKFile");
     if (const std::string kind = file.attribute("type").value(); kind != "PolyData")
-      fail(in_, "it holds " + in_quotes(kind) + ", of which only PolyData is read; save its surface as .vtp or .ply");
+      fail(in_, "it contains " + in_quotes(kind) + "; only PolyData can be read; save its surface as .vtp or .ply");
     read_encoding(file);
     std::vector<VtkPiece> pieces;
     for (const pugi::xml_node piece : file.child("PolyData").children("Piece")) pieces.push_back(read_piece(piece));
@@ -153,34 +154,36 @@ class VtpReader {
   }
 
  private:
-  /// Appended data is no XML where it is raw, so the parser sees all before it.
+  /// Parses the file up to the appended data, which is not XML if it is raw.
   void parse() {
     std::string_view text = in_.bytes;
     std::string closed;
     if (const std::size_t tag = text.find("<AppendedData"); tag != std::string_view::npos) {
       const std::size_t end = text.find('>', tag), begin = text.find('_', end);
       if (begin == std::string_view::npos)
-        fail_at_byte(in_, tag, "the appended data does not begin; is the file cut short?");
+        fail_at_byte(in_, tag, "the appended data is missing; is the file cut short?");
       appended_ = text.substr(begin + 1);
       closed = std::string(text.substr(0, end + 1)) + "</AppendedData></VTKFile>";
       text = closed;
     }
     const pugi::xml_parse_result result = document_.load_buffer(text.data(), text.size());
     if (!result)
-      fail_at_byte(in_, static_cast<std::size_t>(result.offset),
-                   std::string("this is no XML: ") + result.description() + "; the file is damaged or cut short");
+      fail_at_byte(
+          in_, static_cast<std::size_t>(result.offset),
+          std::string("this is not valid XML: ") + result.description() + "; the file is damaged or cut short");
   }
 
   void read_encoding(const pugi::xml_node& file) {
     const std::string order = file.attribute("byte_order").as_string("LittleEndian");
     const std::string header = file.attribute("header_type").as_string("UInt32");
     compressor_ = file.attribute("compressor").value();
-    if (order != "LittleEndian" && order != "BigEndian") fail(in_, "byte_order " + in_quotes(order) + " is not known");
-    if (header != "UInt32" && header != "UInt64") fail(in_, "header_type " + in_quotes(header) + " is not known");
+    if (order != "LittleEndian" && order != "BigEndian")
+      fail(in_, "byte_order " + in_quotes(order) + " is not supported");
+    if (header != "UInt32" && header != "UInt64") fail(in_, "header_type " + in_quotes(header) + " is not supported");
     encoding_ = {order == "BigEndian", header == "UInt64", !compressor_.empty()};
     const std::string appended = file.child("AppendedData").attribute("encoding").as_string("base64");
     if (appended != "raw" && appended != "base64")
-      fail(in_, "appended data in the encoding " + in_quotes(appended) + " is not read");
+      fail(in_, "the encoding " + in_quotes(appended) + " of the appended data is not supported");
     appended_base64_ = appended == "base64";
   }
 
@@ -228,15 +231,17 @@ class VtpReader {
     return cells;
   }
 
-  /// @param tuples  how many there must be; nullopt: any number. @param width  of each; 0: any
+  /// @param tuples  required number of tuples; nullopt: any number
+  /// @param width   required number of components; 0: any number
   VtkArray read_array(const pugi::xml_node& node, const std::string& what, std::optional<std::uint64_t> tuples,
                       std::size_t width) const {
     if (!node) fail(in_, what + " is missing");
     const std::optional<VtkType> type = find_vtk_type(node.attribute("type").value());
-    if (!type) fail(in_, what + " has the type " + in_quotes(node.attribute("type").value()) + ", which is not read");
+    if (!type)
+      fail(in_, what + " has the type " + in_quotes(node.attribute("type").value()) + ", which is not supported");
     VtkArray array{node.attribute("Name").value(), whole(node, "NumberOfComponents", 1), type->whole, {}};
     if (width != 0 && array.width != width)
-      fail(in_, what + " has " + std::to_string(array.width) + " numbers for each, not " + std::to_string(width));
+      fail(in_, what + " must have components: " + std::to_string(width) + ", found: " + std::to_string(array.width));
     const std::string format = node.attribute("format").as_string("ascii");
     if (format == "ascii")
       array.values = read_text(node, *type, what);
@@ -244,7 +249,7 @@ class VtpReader {
       array.values = load_vtk_numbers(read_bytes(node, format, *type, what), *type, encoding_.big_endian);
     const std::uint64_t count = array.values.size();
     if (tuples && (array.width == 0 || count % array.width != 0 || count / array.width != *tuples))
-      fail(in_, what + " holds " + std::to_string(count) + " numbers, not " + std::to_string(array.width) +
+      fail(in_, what + " has " + std::to_string(count) + " numbers, not " + std::to_string(array.width) +
                     " for each of " + std::to_string(*tuples));
     return array;
   }
@@ -252,7 +257,7 @@ class VtpReader {
   std::string read_bytes(const pugi::xml_node& node, const std::string& format, const VtkType& type,
                          const std::string& what) const {
     if (encoding_.compressed && compressor_ != "vtkZLibDataCompressor")
-      fail(in_, what + " is compressed by " + in_quotes(compressor_) + ", of which only vtkZLibDataCompressor is read");
+      fail(in_, what + " is compressed by " + in_quotes(compressor_) + "; only vtkZLibDataCompressor is supported");
     std::string bytes;
     if (format == "appended") {
       const std::uint64_t offset = whole(node, "offset", appended_.size());
@@ -263,10 +268,11 @@ class VtpReader {
     } else if (format == "binary") {
       bytes = decode_vtp_array(in_, node.child_value(), true, encoding_, what);
     } else {
-      fail(in_, what + " has the format " + in_quotes(format) + "; ascii, binary and appended are known");
+      fail(in_, what + " has the format " + in_quotes(format) + "; ascii, binary and appended are supported");
     }
     if (bytes.size() % type.size != 0)
-      fail(in_, what + " has " + std::to_string(bytes.size()) + " bytes, no multiple of " + std::to_string(type.size));
+      fail(in_,
+           what + " has " + std::to_string(bytes.size()) + " bytes, not a multiple of " + std::to_string(type.size));
     return bytes;
   }
 
@@ -276,7 +282,7 @@ class VtpReader {
     for (std::string_view word = next_vtk_word(rest); !word.empty(); word = next_vtk_word(rest)) {
       const std::optional<double> value = to_vtk_number(word, type);
       if (!value)
-        fail(in_, what + " holds " + in_quotes(word) + ", which is no number of its type" + hint_at_comma(word));
+        fail(in_, what + " contains " + in_quotes(word) + ", which is not a number of its type" + hint_at_comma(word));
       values.push_back(*value);
     }
     return values;

@@ -1,5 +1,5 @@
 /// \file
-/// VTK's XML files of polygonal data.
+/// Reader of VTK's XML files of polygonal data.
 #pragma once
 
 #include "ahm/io/geometry.hpp"
@@ -7,7 +7,7 @@
 
 namespace ahm::io {
 
-/// Arrays as text, base64 or appended (raw or base64), as they are or compressed by zlib. @throws IoError
+/// Reads arrays as text, base64 or appended data (raw or base64), uncompressed or compressed with zlib. @throws IoError
 Geometry read_vtp(const Input& in);
 
 }  // namespace ahm::io

@@ -26,7 +26,7 @@
 namespace ahm::io {
 namespace {
 
-/// The names of the temporary files that exist. Fixed in size and lock-free, because a signal handler reads it.
+/// Path of an existing temporary file. The registry has a fixed size and no locks because a signal handler reads it.
 struct Slot {
   enum State { free, filling, used };
   std::atomic<int> state{free};
@@ -34,9 +34,9 @@ struct Slot {
 };
 static_assert(std::atomic<int>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
 std::array<Slot, 16> unfinished;
-std::atomic<bool> is_ending{false};  // since `remove_unfinished_files`
+std::atomic<bool> is_ending{false};  // true after `remove_unfinished_files`
 
-/// Does not return once the process is ending: what its threads could still do or tell is wrong by then.
+/// Blocks forever when the process is ending: its temporary files are gone, and any error report would be wrong.
 void wait_if_ending() {
   while (is_ending) ::pause();
 }
@@ -54,7 +54,7 @@ sigset_t pipe_signal() {
   return pipe;
 }
 
-/// Holds back signals of this thread while it lives.
+/// Blocks signals of this thread during its lifetime.
 class BlockedSignals {
  public:
   explicit BlockedSignals(const sigset_t& signals) { ::pthread_sigmask(SIG_BLOCK, &signals, &before_); }
@@ -70,7 +70,7 @@ class BlockedSignals {
   sigset_t before_{};
 };
 
-/// The slot for a name; -1 when all are taken: the file is then still removed by the destructor, only not by a signal.
+/// Reserves a slot for a path. @return -1 when all are in use: then the destructor removes the file, but a signal handler does not
 int fill_slot(const std::filesystem::path& path) {
   const std::string& name = path.native();
   for (std::size_t k = 0; k < unfinished.size() && name.size() < unfinished[k].name.size(); ++k) {
@@ -87,9 +87,9 @@ void forget(int& slot) noexcept {
   slot = -1;
 }
 
-/// Makes a file and registers its name: -1, and errno, without either. The handler of a signal may run in another thread
-/// at the same time: it waits while a slot is being filled, so that this thread must not be interrupted by another handler
-/// then; and what begins after it waits here for the end of the process.
+/// Creates a file and registers its path. @return -1 and errno if it cannot be created. A signal handler may run in another thread at
+/// the same time. It waits while a slot is being filled, so this thread blocks signals until the slot is filled. Calls that begin
+/// after the handler wait for the end of the process.
 int create(const std::filesystem::path& path, int& slot) {
   const BlockedSignals undisturbed(all_signals());
   slot = fill_slot(path);
@@ -101,7 +101,7 @@ int create(const std::filesystem::path& path, int& slot) {
   return file;
 }
 
-/// Turns the signal that a write to a closed pipe raises into the error EPIPE, for this thread and while it lives.
+/// Suppresses SIGPIPE in this thread during its lifetime; a write to a closed pipe then fails with EPIPE.
 class NoPipeSignal {
  public:
   NoPipeSignal() {
@@ -121,13 +121,13 @@ class NoPipeSignal {
   NoPipeSignal& operator=(const NoPipeSignal&) = delete;
 
  private:
-  BlockedSignals blocked_{pipe_signal()};  // until after the destructor's wait
+  BlockedSignals blocked_{pipe_signal()};  // unblocks after the destructor has consumed the signal
   bool was_pending_ = false;
 };
 
 constexpr std::string_view prefix = ".ahm-", suffix = ".tmp";
 
-/// A name nobody else uses: process and running number, then a retry should a leftover have it.
+/// A unique name: process and running number. The caller retries if a leftover file has this name.
 std::filesystem::path temporary_name(const std::filesystem::path& target) {
   static std::atomic<unsigned> running{0};
   std::string name(prefix);
@@ -135,7 +135,7 @@ std::filesystem::path temporary_name(const std::filesystem::path& target) {
   return target.parent_path() / name.append(suffix);
 }
 
-/// Whether it is one of these names.
+/// Whether `temporary_name` could have returned this file name.
 bool is_temporary_name(std::string_view name) {
   if (!name.starts_with(prefix) || !name.ends_with(suffix)) return false;
   name.remove_prefix(prefix.size());
@@ -146,9 +146,9 @@ bool is_temporary_name(std::string_view name) {
 
 bool are_same(const struct stat& a, const struct stat& b) { return a.st_ino == b.st_ino && a.st_dev == b.st_dev; }
 
-/// Removes what processes that were killed left half written in a directory: files that are no longer locked. The process's number
-/// tells nothing: it may live on another machine, or in another container, and every process of a container may have the same one.
-/// So the name is looked at again under the lock: another process may have removed the file, and a third have made one of that name.
+/// Removes the temporary files of killed processes from a directory: those that are not locked. Process numbers do not identify
+/// them, because processes on other machines or in other containers may have the same number. After locking, the name is checked
+/// again: another process may have removed the file, and a third may have created a new one with this name.
 void remove_leftovers(const std::filesystem::path& directory) {
   const std::unique_ptr<DIR, int (*)(DIR*)> entries(::opendir(directory.empty() ? "." : directory.c_str()), ::closedir);
   if (!entries) return;
@@ -167,7 +167,7 @@ void remove_leftovers(const std::filesystem::path& directory) {
   }
 }
 
-/// Once for each directory.
+/// Calls `remove_leftovers` once per directory.
 void tidy_up(const std::filesystem::path& directory) {
   static std::mutex mutex;
   static std::set<std::filesystem::path> done;
@@ -186,7 +186,7 @@ std::filesystem::path without_links(std::filesystem::path path) {
 }
 
 bool is_stream(const std::filesystem::path& path) {
-  // The process's own output may be redirected to a file, which whoever redirected it holds open.
+  // The process's own output may be redirected to a file, which its creator holds open.
   const std::string& name = path.native();
   if (name == "/dev/stdout" || name == "/dev/stderr" || name.starts_with("/dev/fd/")) return true;
   struct stat info {};
@@ -199,9 +199,8 @@ AtomicFile::AtomicFile(const std::filesystem::path& path) : path_(path), target_
   if (exists && S_ISDIR(info.st_mode)) fail(EISDIR);
   if (exists && ::access(path.c_str(), W_OK) != 0) fail(errno);
   if (is_stream(path)) {
-    // Not through target_: /dev/stdout leads to names that exist only in messages ("pipe:[123]"). Appending, because a
-    // redirected output may hold something already.
-    // By its number, because what is a socket cannot be opened by a name.
+    // Does not use target_: /dev/stdout may resolve to a name that is not a path ("pipe:[123]"). Appends, because redirected output
+    // may already contain data. Duplicates the descriptor of stdout, because a socket cannot be opened by name.
     descriptor_ = path == "/dev/stdout" ? ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0)
                                         : ::open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
     if (descriptor_ < 0) fail(errno);
@@ -215,8 +214,8 @@ AtomicFile::AtomicFile(const std::filesystem::path& path) : path_(path), target_
 
 AtomicFile::~AtomicFile() { discard(); }
 
-/// Locked (see remove_leftovers). @return false where another process has that name, or takes the file for a leftover, because it
-/// was not locked yet. File systems without locks have no leftovers removed.
+/// Creates and locks the temporary file (see remove_leftovers). @return false if the name is in use, or if another process removed
+/// the file as a leftover before it was locked. On file systems without locks, leftovers are not removed.
 bool AtomicFile::create_temporary() {
   temporary_ = temporary_name(target_);
   descriptor_ = create(temporary_, slot_);
@@ -264,7 +263,7 @@ void AtomicFile::flush() {
 
 void AtomicFile::finish() {
   flush();
-  // A pipe or terminal has nothing to synchronise, and would say so with EINVAL. A file stays open: so it is locked.
+  // fsync fails with EINVAL on pipes and terminals. A regular file stays open, to stay locked.
   if (!temporary_.empty() && ::fsync(descriptor_) != 0) fail(errno);
   if (temporary_.empty() && ::close(std::exchange(descriptor_, -1)) != 0 && errno != EINTR) fail(errno);
   finished_ = true;
@@ -298,7 +297,7 @@ void AtomicFile::fail(int error) {
   wait_if_ending();
   discard();
   const std::string problem = "cannot write " + quoted_path(path_) + ": " + std::generic_category().message(error);
-  if (error == EPIPE) throw IoError("pipe_closed", problem, "nobody reads it any more");
+  if (error == EPIPE) throw IoError("pipe_closed", problem, "its reader has closed the pipe");
   throw IoError(problem);
 }
 

@@ -1,4 +1,4 @@
-// Stands in for npz.cpp in a build without minizip.
+// Replaces npz.cpp in builds without minizip.
 #include "ahm/io/npz.hpp"
 
 namespace ahm::io {

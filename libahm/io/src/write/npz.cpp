@@ -13,9 +13,9 @@
 namespace ahm::io {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "arrays are written as they lie in memory");
+static_assert(std::endian::native == std::endian::little, "arrays are written in the byte order of the memory");
 
-/// Version 1.0 of the .npy format: magic, length of the text, the text, padded to a multiple of 64 bytes.
+/// Header of the .npy format 1.0: magic, length of the text, and the text, padded to a multiple of 64 bytes.
 std::string npy_header(const std::string& type, const std::vector<std::size_t>& shape) {
   std::string text = "{'descr': '" + type + "', 'fortran_order': False, 'shape': (";
   for (std::size_t k = 0; k < shape.size(); ++k) text += (k > 0 ? ", " : "") + std::to_string(shape[k]);
@@ -40,8 +40,8 @@ struct NpzFile::Impl {
 
   explicit Impl(const std::filesystem::path& target) : path(target), file(target) {
     if (file.temporary().empty())
-      throw IoError(path.string() + ": is no regular file; a .npz cannot be written to a pipe or device");
-    // minizip opens the file by its name, since it goes back to fill in lengths.
+      throw IoError(path.string() + ": not a regular file; a .npz file cannot be written to a pipe or device");
+    // minizip opens the file by name because it seeks back to fill in lengths.
     zip = zipOpen64(file.temporary().c_str(), APPEND_STATUS_CREATE);
     if (zip == nullptr) throw IoError(path.string() + ": cannot be written");
   }
@@ -53,7 +53,7 @@ struct NpzFile::Impl {
       throw IoError(path.string() + ": writing failed; is the disk full? (zip status " + std::to_string(status) + ")");
   }
   void write(const void* bytes, std::size_t count) const {
-    constexpr std::size_t most = std::size_t{1} << 24;  // minizip counts in unsigned int
+    constexpr std::size_t most = std::size_t{1} << 24;  // minizip takes lengths as unsigned int
     for (std::size_t done = 0; done < count; done += most)
       require(zipWriteInFileInZip(zip, static_cast<const char*>(bytes) + done,
                                   static_cast<unsigned>(std::min(most, count - done))));
@@ -66,11 +66,11 @@ struct NpzFile::Impl {
     std::size_t expected = per_element;
     for (std::size_t extent : shape) expected *= extent;
     if (expected != values.size())
-      throw InvalidArgument("array " + name + " has " + std::to_string(values.size()) +
-                            " values where its shape asks for " + std::to_string(expected));
-    // minizip writes to memory it could not have, so it is asked for beforehand.
+      throw InvalidArgument("array " + name + " has length " + std::to_string(values.size()) +
+                            ", but its shape requires " + std::to_string(expected));
+    // minizip does not check its allocations, so check beforehand that there is memory.
     detail::require_memory(std::size_t{1} << 20);
-    // Year 1980, month 1, day 1: the first date a zip knows, so that equal arrays make equal files.
+    // January 1, 1980, the earliest date of a zip archive: a fixed date makes files of equal arrays identical.
     zip_fileinfo info{};
     info.tmz_date.tm_mday = 1;
     info.tmz_date.tm_year = 1980;

@@ -22,14 +22,14 @@ namespace {
 void check(const MeshPart& part) {
   const auto check_length = [&](const char* name, std::size_t size, std::size_t wanted) {
     if (size != wanted)
-      fail(part, std::string(name) + " has " + std::to_string(size) + " entries, not " + std::to_string(wanted));
+      fail(part, std::string(name) + " has length " + std::to_string(size) + ", not " + std::to_string(wanted));
   };
   if (part.name.empty() || !std::all_of(part.name.begin(), part.name.end(),
                                         [](unsigned char c) { return c == '_' || (c < 128 && std::isalnum(c)); }))
     fail(part, "its name must be letters, digits and _");
   if (!part.normals.empty()) check_length("normals", part.normals.size(), part.points.size());
   if (!part.colors.empty()) check_length("colors", part.colors.size(), part.points.size());
-  if (!part.colors.empty() && part.texture) fail(part, "colors do not go beside a texture");
+  if (!part.colors.empty() && part.texture) fail(part, "it has both colors and a texture; choose one");
   for (const Property& property : part.properties)
     check_length(property.name.c_str(), property.values.size(), part.points.size());
   const auto& [begin, vertices] = part.faces;
@@ -43,7 +43,7 @@ void check(const MeshPart& part) {
   for (std::size_t c = 0; c < vertices.size(); ++c) {
     const Index v = vertices[c];
     if (v < 0 || static_cast<std::size_t>(v) >= part.points.size())
-      fail(part, "corner " + std::to_string(c) + " names vertex " + std::to_string(v) + ", outside [0, " +
+      fail(part, "corner " + std::to_string(c) + " is vertex " + std::to_string(v) + ", outside [0, " +
                      std::to_string(part.points.size()) + ")");
     for (double x : part.points[v])
       if (!std::isfinite(x)) fail(part, "point " + std::to_string(v) + " is not finite");
@@ -67,7 +67,7 @@ PartVertices vertices_of(const MeshPart& part) {
   for (Index v : part.faces.vertices) result.point.push_back(number[v]);
   if (part.texture_coordinates.empty()) return result;
 
-  std::vector<Index> first(result.points.size(), -1), next;  // the pairs of a point, linked
+  std::vector<Index> first(result.points.size(), -1), next;  // linked list of the pairs of each point
   for (std::size_t c = 0; c < result.point.size(); ++c) {
     const double u = part.texture_coordinates[2 * c], v = part.texture_coordinates[2 * c + 1];
     Index pair = first[result.point[c]];
@@ -115,7 +115,7 @@ std::string material_of(const MeshPart& part, const std::string& texture) {
   return text + "\n";
 }
 
-/// How many of each kind came before, since OBJ counts over the whole file.
+/// Numbers of elements written so far; OBJ numbers elements across the whole file.
 struct Counts {
   Offset points = 0, textures = 0, normals = 0;
 };
@@ -173,7 +173,7 @@ void write_textured_obj(const std::filesystem::path& path, std::span<const MeshP
 
 namespace {
 
-/// What all parts have.
+/// Attributes that all parts have.
 struct Common {
   bool normals = true, colors = true;
   std::vector<std::string> properties;
@@ -194,7 +194,7 @@ struct Common {
   }
 };
 
-/// All parts in one, with a vertex for every pair of texture coordinates of a point.
+/// One mesh of all parts, with one vertex per distinct pair of texture coordinates of a point.
 struct OneMesh {
   std::vector<Vec3> points, normals;
   std::vector<std::array<std::uint8_t, 3>> colors;
@@ -229,8 +229,8 @@ void check_names(const MeshPart& part) {
   constexpr std::string_view own[] = {"x", "y", "z", "nx", "ny", "nz", "red", "green", "blue", "s", "t", "point"};
   for (const Property& property : part.properties)
     if (std::ranges::find(own, property.name) != std::end(own))
-      throw InvalidArgument("mesh part '" + part.name + "': a property is called " + property.name +
-                            ", as a column of the .ply file; rename it");
+      throw InvalidArgument("mesh part '" + part.name + "': the property " + property.name +
+                            " has the name of a column of the .ply file; rename it");
 }
 
 }  // namespace

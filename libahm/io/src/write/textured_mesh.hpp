@@ -1,5 +1,5 @@
 /// \file
-/// What the writers of textured meshes share.
+/// Shared by the writers of textured meshes.
 #pragma once
 
 #include <string>
@@ -10,13 +10,13 @@
 
 namespace ahm::io {
 
-/// The vertices of a part as files want them.
+/// The vertices of a part, numbered as in a file.
 struct PartVertices {
-  std::vector<Index> points;         ///< those in use, in ascending order
-  std::vector<Index> point;          ///< per corner: position in `points`
-  std::vector<double> textures;      ///< pairs (u, v), each different for its point; empty without a texture
-  std::vector<Index> texture;        ///< per corner: position in `textures`
-  std::vector<Index> texture_point;  ///< per pair: position of its point in `points`
+  std::vector<Index> points;         ///< points that faces use, ascending
+  std::vector<Index> point;          ///< per corner: index into `points`
+  std::vector<double> textures;      ///< pairs (u, v), distinct for each point; empty without texture coordinates
+  std::vector<Index> texture;        ///< per corner: index of its pair in `textures`
+  std::vector<Index> texture_point;  ///< per pair: index of its point in `points`
 };
 
 PartVertices vertices_of(const MeshPart& part);

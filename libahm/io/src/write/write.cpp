@@ -1,4 +1,4 @@
-// Own writer: PCL's rounds the viewpoint to six digits and wants all rows in memory once more.
+// PCD is not written with PCL, whose writer rounds the viewpoint to six digits and copies all rows in memory.
 #include "ahm/io/write.hpp"
 
 #include <unistd.h>
@@ -22,7 +22,7 @@ namespace ahm::io {
 
 void append_decimals(std::string& text, double value) {
   if (std::isnan(value)) {
-    text += "nan";  // never "-nan", which some readers refuse
+    text += "nan";  // not "-nan", which some readers reject
     return;
   }
   char digits[32];
@@ -54,7 +54,7 @@ namespace {
   throw IoError("cannot write " + quoted_path(path) + ": " + what);
 }
 
-/// What a file is written as: as asked for, or else by its name.
+/// The extension that selects the format: the requested one, or else that of the file name.
 std::string extension_to_write(const std::filesystem::path& path, const std::string& asked) {
   const std::string extension = asked.empty() ? lower_extension(path) : asked;
   return extension.empty() && is_stream(path) ? ".csv" : extension;
@@ -65,7 +65,7 @@ const Format& format_to_write(const std::filesystem::path& path, const std::stri
   const std::string extension = extension_to_write(path, asked);
   const Format* format = find_format(extension);
   if (format == nullptr || (format->write == nullptr && format->missing.empty()))
-    fail(path, "unknown file type " + in_quotes(extension) + "; known are " + list_of(extensions(Use::write)));
+    fail(path, "unknown file type " + in_quotes(extension) + "; known types are " + list_of(extensions(Use::write)));
   if (format->write == nullptr)
     fail(path, "this build has no " + format->missing + ", which writes " + extension + " files; choose .ply or .csv");
   return *format;
@@ -114,10 +114,10 @@ enum class Storage { as_it_is, floats, packed };
 using Names = std::vector<std::string>;
 const Names normal_names{"nx", "ny", "nz"};
 const Names color_names{"red", "green", "blue"};
-/// What PCL's types of points have as floats.
+/// Columns that are floats in PCL's point types.
 const Names float_names[] = {{"x", "y", "z"}, {"intensity"}, {"curvature"}};
 
-/// Whether every number is a float already, as the coordinates of most clouds are stored.
+/// Whether every number is exactly a float, like the coordinates of most clouds.
 bool fits_float(std::span<const double> values) {
   return std::ranges::all_of(
       values, [](double x) { return !std::isfinite(x) || static_cast<double>(static_cast<float>(x)) == x; });
@@ -134,7 +134,7 @@ Storage storage_of(const Column& column) {
 }
 
 PcdField field_of(const Column& column, std::size_t k, Storage storage) {
-  // PCL's name for what others call nx, ny, nz.
+  // PCL calls nx, ny, nz normal_x, normal_y, normal_z.
   const std::string name = column.names == normal_names ? "normal_" + std::string(1, "xyz"[k]) : column.names[k];
   if (storage == Storage::floats) return {name, 'F', 4};
   if (std::holds_alternative<std::span<const double>>(column.values)) return {name, 'F', 8};
@@ -219,7 +219,7 @@ std::string header_of(const Table& table, bool many_corners) {
   return header + "end_header\n";
 }
 
-/// One element of the body, as bytes or as a line of text.
+/// One item of a PLY element, as bytes or as a line of text.
 class Item {
  public:
   explicit Item(bool text) : text_(text) {}

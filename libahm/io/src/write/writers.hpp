@@ -1,5 +1,5 @@
 /// \file
-/// What the writers share.
+/// Shared by the writers.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 
 namespace ahm::io {
 
-/// @throws InvalidArgument when the columns, faces and edges do not fit together
+/// @throws InvalidArgument when the columns, faces and edges are inconsistent
 void check(const Table& table);
 
 void write_pcd(AtomicFile& file, const Table& table);
@@ -22,10 +22,10 @@ void write_ply(AtomicFile& file, const Table& table);
 void write_textured_ply(const std::filesystem::path& path, std::span<const MeshPart> parts);
 void write_textured_obj(const std::filesystem::path& path, std::span<const MeshPart> parts);
 
-/// Appends the shortest decimals that read back to the same double, in every locale; "nan" for every NaN.
+/// Appends the shortest decimals that read back to the same double, independent of the locale; "nan" for every NaN.
 void append_decimals(std::string& text, double value);
 
-/// Calls `visit` with the numbers of a row of a column: double, Index or uint8_t, words as their codes.
+/// Calls `visit` with each number of a column's row: double, Index or uint8_t; words as their codes.
 template <class Visit>
 void visit_row(const Column& column, std::size_t row, const Visit& visit) {
   const std::size_t width = column.names.size();
@@ -40,7 +40,7 @@ void visit_row(const Column& column, std::size_t row, const Visit& visit) {
       column.values);
 }
 
-/// Writes lines made by `append(text, row)`, some at a time by all threads: numbers take longer to spell than to write.
+/// Writes the lines that `append(text, row)` appends. Threads format blocks of lines, because formatting takes longer than writing.
 template <class Append>
 void write_lines(AtomicFile& file, const Table& table, const Append& append) {
   constexpr Offset lines_per_task = 4096, tasks_at_once = 16;

@@ -22,18 +22,18 @@ namespace {
 
 using Axes = std::array<double, 4>;
 
-/// u at an angle, v at its left; `mirrored`: at its right.
+/// u at an angle, v a quarter turn to its left; `mirrored`: to its right.
 Axes axes_at(double angle, bool mirrored = false) {
   const double c = std::cos(angle), s = std::sin(angle), side = mirrored ? -1 : 1;
   return {c, -side * s, s, side * c};
 }
 
-/// What two points of a source without positions lie apart, in the plane of their face.
+/// Vector between two points of a face, in the plane of the face. For surfaces without positions.
 Vec2 side_between(const exact::PolyhedralSurface& surface, const exact::MeshPoint& from, const exact::MeshPoint& to) {
   return surface.place(to) - surface.place(from);
 }
 
-/// The angle in the frame of a vertex at which its path arrives.
+/// The angle, in the frame of a vertex, at which its shortest path arrives.
 double arrival_angle(const FlatTriangles& flat, const exact::Arrival& in) {
   const exact::PolyhedralSurface& surface = flat.surface;
   const exact::HalfRecord& record = surface.record(in.half);
@@ -43,7 +43,7 @@ double arrival_angle(const FlatTriangles& flat, const exact::Arrival& in) {
   return flat.angles[record.apex] + (flat.mirrored[record.apex] ? -angle : angle);
 }
 
-/// Axes in the frame of a vertex, in the plane of its directions.
+/// Converts axes from the frame of a vertex to the plane of its directions.
 Axes from_frame(const FlatTriangles& flat, Index vertex, const Axes& axes) {
   if (flat.angles.empty()) return axes;
   const double c = std::cos(flat.angles[vertex]), s = std::sin(flat.angles[vertex]),
@@ -61,7 +61,7 @@ Axes in_frame(const FlatTriangles& flat, Index vertex, const Axes& axes) {
           s * axes[1] + c * side * axes[3]};
 }
 
-/// Coordinates in the axes of a source, of those in its face or about its vertex.
+/// Converts coordinates in the face or around the vertex of a source to the axes of the source.
 Vec2 in_axes(const Axes& axes, const Vec2& w) {
   return {axes[0] * w[0] + axes[2] * w[1], axes[1] * w[0] + axes[3] * w[1]};
 }
@@ -113,7 +113,7 @@ double ExactGeodesics::u_in_face(const SurfacePoint& at, const SurfaceSource& pl
   return std::atan2(u[1], u[0]);
 }
 
-/// Axes that a source in a face has, carried along the bisector to the vertex at one of its corners.
+/// The axes of a source in a face, transported along the bisector to the vertex at one of its corners.
 Axes ExactGeodesics::at_corner(exact::Half corner, double u) const {
   const exact::PolyhedralSurface& surface = flat_.surface;
   const auto place = [&](exact::Half h) {
@@ -136,7 +136,7 @@ Axes ExactGeodesics::vertex_axes(const SurfaceSource& placed) const {
                     own.empty() ? Axes{1, 0, 0, 1} : Axes{own[0], own[1], own[2], own[3]});
 }
 
-/// The straight line from the row of a source in a tangent plane to that source.
+/// Traces the straight line from the row of a source in a tangent plane to that source.
 /// @throws InvalidGeometry (fault "beyond_boundary")
 exact::TracedPath ExactGeodesics::trace_to(const SurfaceSource& placed) const try {
   const Axes a = vertex_axes(placed);
@@ -148,7 +148,7 @@ exact::TracedPath ExactGeodesics::trace_to(const SurfaceSource& placed) const tr
   throw InvalidGeometry("beyond_boundary", e.what(), "choose a source inside the surface");
 }
 
-/// The angle of the u axis of a source in a tangent plane, in the frame of side 0 of the face where that source lies.
+/// The angle of the u axis of a source in a tangent plane, in the frame of side 0 of the face that contains the source.
 double ExactGeodesics::u_beyond_row(const SurfaceSource& placed) const {
   const std::span<const double> back = placed.source.offsets();
   const Axes a = vertex_axes(placed);
@@ -183,7 +183,7 @@ ExactGeodesics::Placed ExactGeodesics::placed(std::span<const ExactSource> sourc
   return result;
 }
 
-/// Several sources as one.
+/// Joins several sources into one.
 Source ExactGeodesics::joined(std::span<const ExactSource> given, const Placed& placed) {
   if (given.size() == 1 && given[0].position == Vec2{} && given[0].angle == 0 && !given[0].mirrored)
     return placed.sources[0];
@@ -216,8 +216,8 @@ Source ExactGeodesics::joined(std::span<const ExactSource> given, const Placed& 
   return all;
 }
 
-/// Per vertex half of what its longest side to a neighbour of the same source, or of the same curve, has too much in the map,
-/// world units.
+/// Per vertex: half of the largest amount by which a side to a neighbor is longer in the map than on the surface, world units.
+/// Only neighbors of the same source, or of the same curve, are compared.
 std::vector<double> ExactGeodesics::jumps(std::span<const double> coordinates, std::span<const Index> labels,
                                           bool of_curve) const {
   std::vector<double> jump(labels.size(), 0);
@@ -228,7 +228,7 @@ std::vector<double> ExactGeodesics::jumps(std::span<const double> coordinates, s
     const double apart = std::hypot(coordinates[2 * r.head] - coordinates[2 * r.tail],
                                     coordinates[2 * r.head + 1] - coordinates[2 * r.tail + 1]);
     const double excess = (apart - flat_.length_unit * r.length) / 2;
-    // Less than this is rounding.
+    // A smaller excess is rounding.
     if (!(excess > 1e-9 * apart)) continue;
     jump[r.tail] = std::max(jump[r.tail], excess);
     jump[r.head] = std::max(jump[r.head], excess);
@@ -358,7 +358,7 @@ exact::GeodesicPath ExactGeodesics::locally_shortest_path(const SurfacePoint& fr
   const exact::MeshPoint start = point(from), end = point(to);
   std::function<double(Vertex)> straight;
   if (!flat_.positions.empty()) {
-    // A little less than the straight line, against rounding.
+    // A little less than the straight line, as a margin for rounding.
     straight = [this, at = position(end), scale = (1 - 1e-12) / flat_.length_unit](Vertex v) {
       return scale * distance(flat_.positions[v.index], at);
     };

@@ -30,7 +30,7 @@ void check(const PolyhedralSurface& surface, std::span<const MeshPoint> sources,
   for (const MeshPoint& p : sources) checked(surface, p, "source");
 }
 
-/// Windows from all sources; what they took is given back.
+/// Propagates windows from all sources. The memory of the windows is freed on return.
 Found propagate(const PolyhedralSurface& surface, std::span<const MeshPoint> sources,
                 std::span<const MeshPoint> targets, const ExactOptions& options) {
   std::unique_ptr<Propagation> windows;
@@ -43,20 +43,20 @@ Found propagate(const PolyhedralSurface& surface, std::span<const MeshPoint> sou
   return std::move(*windows).found();
 }
 
-/// No vertex is farther than a neighbour and the side between them. Otherwise windows were lost, which happens in needles
-/// whose angles are those of rounding.
+/// Checks that no vertex is farther than a neighbor plus the side between them. Otherwise windows were lost, which happens in
+/// needles with angles near the rounding error.
 void check_reached(const PolyhedralSurface& surface, const Found& found, double tolerance) {
   const std::span<const double> distance = found.distance;
   const auto check = [&](Index from, Index to, double length) {
     const double way = (distance[from] + length) * (1 + 1e-9 + 3 * tolerance);
     if (!(way < found.horizon) || distance[to] <= way) return;
-    throw InvalidGeometry(
-        "windows_lost",
-        "windows were lost on the way to vertex " + std::to_string(to) + " beside vertex " + std::to_string(from),
-        "repair the needles there, allow for a tolerance, or use heat");
+    throw InvalidGeometry("windows_lost",
+                          "windows were lost before they reached vertex " + std::to_string(to) +
+                              ", a neighbor of vertex " + std::to_string(from),
+                          "repair the needle triangles there, set a tolerance, or use the heat method");
   };
   for (Index v = 0; v < surface.vertex_count(); ++v) {
-    if (!(distance[v] < found.horizon)) continue;  // most, where the radius is small
+    if (!(distance[v] < found.horizon)) continue;  // most vertices, where the radius is small
     const Corner first = surface.first_corner(v);
     for (Corner c = first; c.half >= 0;) {
       const HalfRecord r = surface.record(c.half);
@@ -68,14 +68,14 @@ void check_reached(const PolyhedralSurface& surface, const Found& found, double 
   }
 }
 
-/// The vertex of a face with the given number, which stands for its component.
+/// The component of a point, as the number of the vertex that represents it.
 Index component_of(const PolyhedralSurface& surface, const MeshPoint& point) {
   return surface.component(surface.record(3 * point.face).tail);
 }
 
 }  // namespace
 
-/// Turns what a propagation found into a map.
+/// Converts the result of a propagation to a map.
 class MapBuilder {
  public:
   MapBuilder(const PolyhedralSurface& surface, std::vector<MeshPoint> sources, std::vector<MeshPoint> targets)
@@ -122,7 +122,7 @@ class MapBuilder {
   }
 
   const PolyhedralSurface& surface_;
-  std::vector<std::uint8_t> lit_;  ///< per component: whether it holds a source
+  std::vector<std::uint8_t> lit_;  ///< per component: whether it contains a source
   ExactMap map_;
 };
 

@@ -22,7 +22,7 @@
 namespace ahm::exact {
 namespace {
 
-/// The line in a frame to which `place` takes points.
+/// The line in another frame; `place` converts points to that frame.
 template <class Map>
 Line mapped(const Line& line, Half half, const Map& place) {
   const Place start = place(line.start), ahead = place({0, 0});
@@ -30,7 +30,7 @@ Line mapped(const Line& line, Half half, const Map& place) {
   return {half, start, tip, line.walked};
 }
 
-/// Where the line crosses the side from a to b, which is `length` long; ends count as part of the side.
+/// Where the line crosses the side from a to b of the given length; its ends belong to the side.
 Exit crossing(const Line& line, Half side, const Place& a, const Place& b, double length) {
   const Place run = b - a;
   const double across = cross(line.direction, run);
@@ -80,7 +80,7 @@ Exit leave(const PolyhedralSurface& surface, const Line& line) {
 }
 
 Line cross_side(const PolyhedralSurface& surface, const Line& line, const Exit& exit) {
-  // In the frame whose left side is the exit.
+  // In the frame of the half-edge whose left side is the exit.
   const Line seen = in_frame_of(surface, line, next(exit.side));
   const HalfRecord& r = surface.record(seen.half);
   Line beyond = mapped(seen, r.beyond_left, [&](const Place& p) {
@@ -91,7 +91,8 @@ Line cross_side(const PolyhedralSurface& surface, const Line& line, const Exit& 
   return beyond;
 }
 
-/// Beside a needle by rounding, weights may be far from those of any point nearby: then it is the nearest of its sides.
+/// Where rounding puts the place outside the face, the result is the nearest point of its sides. In needles, the weights could
+/// be far from those of any nearby point.
 MeshPoint point_of(const PolyhedralSurface& surface, Half half, const Place& place) {
   const HalfRecord& r = surface.record(half);
   const double up = place[1] / r.apex_y, ahead = (place[0] - up * r.apex_x) / r.length;
@@ -161,14 +162,14 @@ namespace {
 
 using std::numbers::pi;
 
-/// Crossings closer than this multiple of its length to an end of a straight piece are that end.
+/// Crossings closer than this to an end of a straight piece, relative to its length, are that end.
 constexpr double end_margin = 1e-11;
-/// A line that leaves a face closer than this multiple of the side to a corner goes through the vertex.
+/// A line that leaves a face closer than this to a corner, relative to the side, passes through the vertex.
 constexpr double vertex_margin = 1e-12, graze_margin = 1e-10;
 
 double positive_angle(double angle) { return angle < 0 ? angle + 2 * pi : angle; }
 
-/// Collects a path from its end to its source.
+/// Collects a path from its end back to its source.
 class Backwards {
  public:
   Backwards(const PolyhedralSurface& surface, const ExactMap& map) : surface_(surface), map_(map) {}
@@ -195,7 +196,7 @@ class Backwards {
   }
 
  private:
-  /// From a vertex back to the source, which is not added; -1: that is where the path is.
+  /// Collects the path from a vertex back to the source, which is not added. -1: the path is already at its source.
   void back_from(Index vertex) {
     while (vertex >= 0 && map_.arrival(Vertex{vertex}).half >= 0) {
       path_.points.push_back(surface_.vertex_point(Vertex{vertex}));
@@ -204,10 +205,11 @@ class Backwards {
     }
   }
 
-  /// Adds the crossings of the straight piece that comes in at a place of its last face, or at its apex.
-  /// @param target  at that place; null: at the apex
-  /// @return the vertex it comes from, or the first it goes through: both sides of that may be covered by windows, within
-  ///         rounding, but only its own map says which one is right. -1: a source that is no vertex.
+  /// Adds the crossings of the straight piece that ends at a place of its last face, or at the apex.
+  /// @param target  target at that place; null: the apex
+  /// @return the vertex that the piece comes from, or the first vertex that it passes. Windows may cover both sides of the
+  /// latter, within rounding, but only the arrival at the vertex itself determines which side is right. -1: a source that is
+  /// not a vertex
   Index piece(const Arrival& in, const Place& end, double end_distance, const MeshPoint* target) {
     const Origin& origin = map_.origins()[in.origin];
     const Place back = in.from - end;
@@ -245,7 +247,7 @@ class Backwards {
     return false;
   }
 
-  /// The vertex at an exit, if shortest paths to it are part of this one.
+  /// The vertex at an exit if the shortest path to it is part of this path; otherwise -1.
   Index grazed(const Exit& exit, double end_distance) const {
     const HalfRecord& r = surface_.record(exit.side);
     const bool at_tail = exit.along < graze_margin * r.length;
@@ -254,7 +256,7 @@ class Backwards {
     return passes(vertex, exit.walked, end_distance) ? vertex : -1;
   }
 
-  /// Where a path that runs along the boundary leaves it by rounding: the vertex ahead, which shortest paths pass.
+  /// The vertex ahead, where a path along the boundary leaves it by rounding.
   Index end_of_side(const Line& line, const Exit& exit, double end_distance) const {
     const HalfRecord& r = surface_.record(exit.side);
     const bool to_head = in_frame_of(surface_, line, exit.side).direction[0] > 0;
@@ -264,14 +266,14 @@ class Backwards {
     return vertex;
   }
 
-  /// Whether shortest paths to a vertex, which a path has come back to, are part of this one.
+  /// Whether the shortest path to a vertex, which the path has reached backward, is part of this path.
   bool passes(Index vertex, double walked, double end_distance) const {
     const double left = map_.distance(Vertex{vertex});
     return left < end_distance && std::abs(left + walked - end_distance) <= 1e-9 * end_distance;
   }
 
   [[noreturn]] static void lost(const Exit& exit, double end_distance) {
-    throw Error("a path of length " + detail::number(end_distance) + " was lost beyond face " +
+    throw Error("a path of length " + detail::number(end_distance) + " could not be traced beyond face " +
                 std::to_string(exit.side / 3));
   }
 
@@ -293,12 +295,13 @@ class Backwards {
 
 void check_exact(const ExactMap& map) {
   if (map.tolerance() > 0)
-    throw InvalidArgument("'map' has the tolerance " + detail::number(map.tolerance()) + "; paths need an exact one");
+    throw InvalidArgument("'map' has the tolerance " + detail::number(map.tolerance()) +
+                          "; paths require an exact map");
 }
 
-/// Directions this far beyond the boundary run along it.
+/// Directions beyond the boundary by less than this run along it.
 constexpr double boundary_margin = 1e-9;
-/// Lines of more are taken for lost.
+/// Maximum number of sides that a line may cross.
 constexpr std::size_t most_crossings = 1000000;
 
 GeodesicPath without_points(Status status) {
@@ -307,7 +310,7 @@ GeodesicPath without_points(Status status) {
   return path;
 }
 
-/// Follows a straightest geodesic.
+/// Traces a straightest geodesic.
 class Tracer {
  public:
   Tracer(const PolyhedralSurface& surface, double length) : surface_(surface), length_(length), left_(length) {}
@@ -358,14 +361,14 @@ class Tracer {
                           "the line crosses more than " + std::to_string(most_crossings) + " sides within " +
                               detail::number(walked) + " of its length " + detail::number(length_) + ", near face " +
                               std::to_string(path_.points.back().face),
-                          "give a smaller length, or repair needles there");
+                          "choose a smaller length, or repair the needle triangles there");
   }
 
-  /// Leaves the face opposite to the corner that the line starts in.
+  /// Leaves the face through the side opposite to the corner where the line starts.
   Exit leave_corner(const Line& line) const { return leave_through(surface_, line, next(line.half)); }
 
-  /// The angle at which a line goes on at the vertex of a corner: half of the vertex's angle lies on either side; on the
-  /// boundary pi on one, or nowhere.
+  /// The angle at which a line continues at the vertex of a corner. At interior vertices half of the angle lies on either side.
+  /// On the boundary pi lies on one side, or the line ends.
   std::optional<double> straight_on(const Line& line, Half corner) const {
     const Index vertex = surface_.record(corner).tail;
     const Line seen = in_frame_of(surface_, line, corner);
@@ -379,8 +382,8 @@ class Tracer {
 
   const PolyhedralSurface& surface_;
   double length_;
-  double left_;      ///< to go from the start of the current line
-  double done_ = 0;  ///< up to there
+  double left_;      ///< remaining length, from the start of the current line
+  double done_ = 0;  ///< length up to the start of the current line
   TracedPath path_;
 };
 
@@ -389,7 +392,7 @@ class Tracer {
 GeodesicPath path_to_vertex(const PolyhedralSurface& surface, const ExactMap& map, Vertex vertex) {
   if (vertex.index < 0 || vertex.index >= map.size() || map.size() != surface.vertex_count())
     throw InvalidArgument("vertex " + std::to_string(vertex.index) + " is outside [0, " + std::to_string(map.size()) +
-                          "), or the map is of another surface");
+                          "), or the map belongs to another surface");
   check_exact(map);
   if (map.status(vertex) != Status::ok) return without_points(map.status(vertex));
   return Backwards(surface, map).to_vertex(vertex.index);
@@ -398,7 +401,7 @@ GeodesicPath path_to_vertex(const PolyhedralSurface& surface, const ExactMap& ma
 GeodesicPath path_to_target(const PolyhedralSurface& surface, const ExactMap& map, std::size_t target) {
   if (target >= map.targets() || map.size() != surface.vertex_count())
     throw InvalidArgument("target " + std::to_string(target) + " is outside [0, " + std::to_string(map.targets()) +
-                          "), or the map is of another surface");
+                          "), or the map belongs to another surface");
   check_exact(map);
   if (map.target_status(target) != Status::ok) return without_points(map.target_status(target));
   if (const Index vertex = vertex_of(surface, map.target(target)); vertex >= 0)
@@ -415,7 +418,7 @@ GeodesicPath geodesic_path(const PolyhedralSurface& surface, const MeshPoint& fr
 
 GeodesicPath geodesic_path(const PolyhedralSurface& surface, std::span<const MeshPoint> stops, bool closed) {
   if (stops.size() < 2)
-    throw InvalidArgument("'stops' has " + std::to_string(stops.size()) + " points; a path needs 2");
+    throw InvalidArgument("the number of 'stops' is " + std::to_string(stops.size()) + "; a path needs at least 2");
   GeodesicPath path = geodesic_path(surface, stops[0], stops[1]);
   const std::size_t legs = stops.size() - (closed ? 0 : 1);
   for (std::size_t k = 1; k < legs && path.status == Status::ok; ++k) {
@@ -443,11 +446,11 @@ TracedPath trace(const PolyhedralSurface& surface, const MeshPoint& from, double
   if (!surface.on_boundary(vertex))
     angle -= sum * std::floor(angle / sum);
   else if (angle > sum && angle > 2 * pi - boundary_margin)
-    angle = 0;  // along the first side, by rounding
+    angle = 0;  // along the first side, up to rounding
   if (angle < -boundary_margin || angle > sum + boundary_margin)
-    throw InvalidArgument("the direction leads out of the surface at vertex " + std::to_string(vertex) +
-                          " of its boundary: as an angle from the first side it is " + detail::number(direction) +
-                          ", those of the surface are up to " + detail::number(sum));
+    throw InvalidArgument("the direction leaves the surface at vertex " + std::to_string(vertex) +
+                          " of its boundary: its angle from the first side is " + detail::number(direction) +
+                          ", the maximum is " + detail::number(sum));
   return Tracer(surface, length).from(surface.vertex_point(Vertex{vertex}), line_from_vertex(surface, vertex, angle));
 }
 
@@ -455,7 +458,7 @@ namespace {
 
 auto key(const MeshPoint& point) { return std::tie(point.face, point.barycentric); }
 
-/// Numbers of pairs with the same start.
+/// Groups the numbers of pairs that have the same start.
 std::vector<std::vector<std::size_t>> by_start(std::span<const PointPair> pairs) {
   std::vector<std::size_t> order(pairs.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -495,15 +498,15 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// How a way comes to a vertex.
+/// The last step of an edge path to a vertex.
 struct Step {
-  double distance = infinity;  ///< so far
-  Index from = -1;             ///< vertex; -1: where the way starts
-  Half across = -1;            ///< the half-edge that it crosses; -1: none
-  double along = 0;            ///< from its tail
+  double distance = infinity;  ///< length of the path up to the vertex
+  Index from = -1;             ///< previous vertex; -1: start of the path
+  Half across = -1;            ///< half-edge that the step crosses; -1: none
+  double along = 0;            ///< position of the crossing, from the tail of `across`
 };
 
-/// One step per vertex, in pages that are made where one is asked for: near points take little of a large surface.
+/// One step per vertex, in pages allocated on first access: searches between near points use little memory on large surfaces.
 class Steps {
  public:
   explicit Steps(Index size) : pages_(static_cast<std::size_t>(size) / per_page + 1) {}
@@ -519,14 +522,14 @@ class Steps {
   std::vector<std::unique_ptr<Page>> pages_;
 };
 
-/// The shortest way along the edges and straight across them to the vertex beyond, by Dijkstra's algorithm or, with a
-/// lower bound, A* [HNR68].
+/// The shortest path along the edges and straight across edges to the vertex beyond. By Dijkstra's algorithm or, with a lower
+/// bound, A* [HNR68].
 class EdgeSearch {
  public:
   EdgeSearch(const PolyhedralSurface& surface, const std::function<double(Vertex)>& at_least)
       : surface_(surface), at_least_(at_least), step_(surface.vertex_count()) {}
 
-  /// The vertices of the way, and where it crosses edges between them; none where there is none.
+  /// The vertices of the path and its crossings of edges between them; empty where there is no path.
   std::vector<MeshPoint> run(const MeshPoint& from, const MeshPoint& to) {
     double after[3];
     for (int s = 0; s < 3; ++s) after[s] = to_corner(to, s);
@@ -561,7 +564,7 @@ class EdgeSearch {
     bool operator<(const Entry& other) const { return key != other.key ? key > other.key : vertex > other.vertex; }
   };
 
-  /// From a point of a face; a point at a corner goes there alone.
+  /// Distance from a point of a face to corner s. A point at a vertex reaches this vertex only.
   double to_corner(const MeshPoint& point, int s) const {
     if (vertex_of(surface_, point) >= 0) return point.barycentric[s] > 0 ? 0 : infinity;
     MeshPoint corner{point.face, {0, 0, 0}};
@@ -581,7 +584,7 @@ class EdgeSearch {
     } while (c.half >= 0 && c != first);
   }
 
-  /// To the vertex beyond the side opposite to the tail, where it is seen through that side.
+  /// Offers a step to the vertex beyond the side opposite to the tail, if the straight line to it crosses that side.
   void cross_right(const Entry& entry, const HalfRecord& r) {
     const HalfRecord& there = surface_.record(r.beyond_right);
     Place from = beyond_right(r, {0, 0});

@@ -1,5 +1,5 @@
 /// \file
-/// Going straight on over a polyhedral surface.
+/// Straight lines traced over a polyhedral surface.
 #pragma once
 
 #include <vector>
@@ -8,50 +8,50 @@
 
 namespace ahm::exact {
 
-/// A straight line that is being followed from face to face.
+/// A straight line that is traced from face to face.
 struct Line {
-  Half half = -1;     ///< in whose frame it is given
-  Place start{};      ///< where it started, unfolded
+  Half half = -1;     ///< half-edge in whose frame the line is
+  Place start{};      ///< start of the line, unfolded into this frame
   Place direction{};  ///< unit vector
-  double walked = 0;  ///< how far it has been followed
+  double walked = 0;  ///< length traced so far
 
   Place at(double s) const { return start + s * direction; }
 };
 
-/// Where a line leaves a face.
+/// The point where a line leaves a face.
 struct Exit {
-  double walked;  ///< along the line
-  Half side;      ///< half-edge of the same face
-  double along;   ///< from the tail of that half-edge
+  double walked;  ///< length along the line
+  Half side;      ///< half-edge of the same face, through which the line leaves
+  double along;   ///< distance from the tail of that half-edge
 };
 
-/// The same line in the frame of another half-edge of its face.
+/// The line in the frame of another half-edge of the same face.
 Line in_frame_of(const PolyhedralSurface& surface, Line line, Half half);
 
-/// Leaves the face of a line through a given side, or its nearer end.
+/// The exit of a line through a given side, or through the nearer end of that side.
 Exit leave_through(const PolyhedralSurface& surface, const Line& line, Half side);
-/// Leaves the face of a line that entered it through its half-edge, or starts on it or below.
+/// The exit of a line that entered the face through its half-edge, or that starts on or below it.
 Exit leave_upwards(const PolyhedralSurface& surface, const Line& line);
-/// Leaves the face of a line that starts inside it.
+/// The exit of a line that starts inside its face.
 Exit leave(const PolyhedralSurface& surface, const Line& line);
 
-/// The line in the face beyond a side; half < 0 where there is none.
+/// The line in the face across a side; half < 0 on the boundary.
 Line cross_side(const PolyhedralSurface& surface, const Line& line, const Exit& exit);
 
-/// The point of the face where a place in the frame of a half-edge lies, and the point of a half-edge.
+/// The surface point at a place in the frame of a half-edge, and the surface point on a half-edge.
 MeshPoint point_of(const PolyhedralSurface& surface, Half half, const Place& place);
 MeshPoint point_on(const PolyhedralSurface& surface, Half side, double along);
 
-/// The line from a vertex that leaves it at a true angle from the right side of its first corner.
+/// The line from a vertex, at an unscaled angle from the right side of the vertex's first corner.
 Line line_from_vertex(const PolyhedralSurface& surface, Index vertex, double angle);
-/// The line from a place in the face of a half-edge, at an angle in its frame.
+/// The line from a place in the face of a half-edge, at an angle in the half-edge's frame.
 Line line_from(Half half, const Place& place, double angle);
 
 /// The angle of a line in the frame of side 0 of its face.
 double angle_in_face(const PolyhedralSurface& surface, const Line& line);
 
-/// The true angle, from the right side of the first corner, at which a vertex sees a place in one of its faces.
-/// @param corner   the half-edge of the face that starts at the vertex; the place is in its frame
+/// The unscaled angle of the direction from a vertex to a place in one of its faces, from the right side of its first corner.
+/// @param corner   half-edge of the face that starts at the vertex; `towards` is in its frame
 double angle_at_vertex(const PolyhedralSurface& surface, Half corner, const Place& towards);
 
 }  // namespace ahm::exact

@@ -9,14 +9,15 @@
 namespace ahm::exact {
 namespace {
 
-/// Relative to the side: pieces narrower than this go to their neighbour; where two are equal is found to that.
+/// Relative to the side: minimum width of a piece, below which its neighbor replaces it, and accuracy of the position where two
+/// pieces are equal.
 constexpr double least_piece = 1e-11, crossing_width = 1e-10;
-/// Of distances, relatively.
+/// Relative rounding error of distances.
 constexpr double rounding = 1e-14;
-/// Every third one halves the interval, which ends it in time where distances bend sharply.
+/// Maximum number of steps. Every third one bisects the interval, so that it also ends where distances bend sharply.
 constexpr int crossing_steps = 120;
 
-/// Where the rays of two pieces are parallel, the difference of their distances is extremal; NaN or infinite: nowhere.
+/// Where the rays of two pieces are parallel, and the difference of their distances is extremal; NaN or infinite: nowhere.
 double parallel(const FrontPiece& a, const FrontPiece& b) {
   return (a.from[0] * b.from[1] - b.from[0] * a.from[1]) / (b.from[1] - a.from[1]);
 }
@@ -48,7 +49,8 @@ void FrontProfile::emit(const Entry& entry, double begin, double end) {
   out_.back().piece.end = end;
 }
 
-/// Where two pieces are equal, one of them being lower at one end and the other at the other: regula falsi (Illinois).
+/// Where two pieces have equal distances. One of them must be lower at one end of the interval, the other at the other end. By
+/// regula falsi (Illinois).
 double FrontProfile::crossing(const FrontPiece& a, const FrontPiece& b, double low, double high) const {
   double at_low = a.at(low) - b.at(low), at_high = a.at(high) - b.at(high);
   int side = 0;
@@ -68,7 +70,7 @@ double FrontProfile::crossing(const FrontPiece& a, const FrontPiece& b, double l
   return 0.5 * (low + high);
 }
 
-/// Emits the lower of two where both are; where they are equal, the holder.
+/// Emits the lower of two pieces over an interval that both cover; where they are equal, the holder.
 void FrontProfile::contest(const Entry& challenger, const Entry& holder, double begin, double end) {
   const FrontPiece &a = challenger.piece, &b = holder.piece;
   const double equal = rounding * (std::abs(a.sigma) + std::abs(a.from[0]) + std::abs(a.from[1]) + length_);
@@ -116,22 +118,23 @@ void FrontProfile::insert(const FrontPiece& piece) {
 
 namespace {
 
-/// As many pieces as become one at a time.
+/// Maximum number of pieces that are merged at once.
 constexpr std::size_t most_at_once = 12;
-/// Pieces whose directions at the source jump by more are kept apart.
+/// Pieces whose directions at the source differ by more than this, in radians, are not merged.
 constexpr double most_turn = 0.05;
-/// How far the origin of a merged piece may be, in distances and widths of the piece.
+/// Maximum distance of a merged piece's origin, relative to the distances and the width of the piece.
 constexpr double farthest_origin = 1e4;
-/// Gaps of pieces that touch but for rounding, relative to the side.
+/// Gaps between pieces that are only rounding, relative to the side.
 constexpr double closed_gap = 1e-9;
 
 using Run = std::span<const FrontProfile::Entry>;
 
-/// A piece over [begin, end] with given distances at both ends, and `near` as far as its origin is from the first.
+/// The ends of a piece over [begin, begin + width], with fixed distances at both. Its functions compute the distance of the
+/// piece's origin from the first end.
 struct Ends {
   double begin, width, at_begin, rise;
 
-  /// The same for an origin whose distances pass through a third point, or less.
+  /// The origin for which the distance at t equals `value`; nearer origins have smaller distances there.
   double through(double t, double value) const {
     const double along = t - begin, up = value - at_begin, bend = rise / width - up / along;
     if (!(bend > 0)) return std::numeric_limits<double>::infinity();
@@ -147,7 +150,7 @@ struct Ends {
   }
 };
 
-/// The origin whose distances agree at both ends of a run and are no higher between them.
+/// The piece whose distances agree with a run at both ends and are no higher in between.
 std::optional<FrontPiece> below(Run run) {
   const FrontPiece &first = run.front().piece, &last = run.back().piece;
   const double at_begin = first.at(first.begin), at_end = last.at(last.end);
@@ -175,7 +178,8 @@ std::optional<FrontPiece> below(Run run) {
   return piece;
 }
 
-/// Directions as those of the run at both ends, in between by the angle of the ray; false where those of the run jump.
+/// Sets directions that agree with a run at both ends and follow the angle of the ray in between. Returns false where the
+/// directions of the run jump.
 bool turn_as(Run run, double full_angle, FrontPiece& piece) {
   const double start = run.front().piece.direction(run.front().piece.begin);
   double end = start;
@@ -244,23 +248,23 @@ namespace {
 using std::numbers::pi;
 
 constexpr std::uint32_t none = ~0u;
-/// Rays at a smaller angle, in radians, are one.
+/// Rays at a smaller angle than this, in radians, are treated as one.
 constexpr double same_ray = 1e-15;
 
-/// Whether the ray of an origin through t on the half-edge goes on to the left of that of another one.
+/// Whether the ray from an origin through t on the half-edge continues to the left of the ray from another origin.
 bool opens_left(const Place& from, const Place& other, double t) {
   const Vec2 ray{t - from[0], -from[1]}, beside{t - other[0], -other[1]};
   return cross(beside, ray) > same_ray * norm(ray) * norm(beside);
 }
 
-/// What the way by which a piece reaches p lacks, where that lies beyond its own rays.
+/// How much the distance of p by a piece is too short, where p lies outside the rays of the piece.
 double lacking(const FrontPiece& piece, const Place& p) {
   const double crossing = crossing_to(piece.from, p);
   const double t = std::clamp(crossing, piece.begin, piece.end);
   return t == crossing ? 0.0 : detour(piece.from, t, p);
 }
 
-/// In the frame of a half-edge that runs the other way, seen in a mirror.
+/// Converts a piece to the frame of the reversed half-edge, mirrored.
 void turn_over(FrontPiece& piece, double length) {
   const double begin = piece.begin;
   piece.begin = length - piece.end;
@@ -308,7 +312,7 @@ void MergedPropagation::nearer(std::size_t row, double distance, double error) {
   if (row < distance_.size() && distance <= horizon_) turns_.push(distance, {static_cast<Index>(row), distance});
 }
 
-/// Lights all faces about a vertex from there.
+/// Makes a vertex an origin, and lights all faces around it from there.
 void MergedPropagation::turn(const Turn& event) {
   const Index v = event.vertex;
   if (event.distance > distance_[v]) return;
@@ -342,7 +346,7 @@ void MergedPropagation::give_back(std::uint32_t piece) {
   free_ = piece;
 }
 
-/// Whether no shortest path crosses a piece, since one of the ends of the half-edge is nearer [XW09].
+/// Whether no shortest path crosses a piece, because one of the ends of the half-edge is nearer [XW09].
 bool MergedPropagation::loses(const HalfRecord& r, const FrontPiece& piece) const {
   return piece.at(piece.end) > (upper_[r.tail] + piece.end) * slack ||
          piece.at(piece.begin) > (upper_[r.head] + r.length - piece.begin) * slack;
@@ -374,7 +378,7 @@ void MergedPropagation::cross_side(const Side& event) {
     if (profile_.entries()[k].fresh) cross_face(event.half, k);
 }
 
-/// Takes all pieces of a half-edge out of the pool, those that wait being fresh.
+/// Moves all pieces of a half-edge from the pool to the profile. The waiting ones are fresh.
 void MergedPropagation::gather(const Side& event) {
   const HalfRecord& r = surface_.record(event.half);
   Lists& lists = lists_[event.half];
@@ -396,7 +400,7 @@ void MergedPropagation::gather(const Side& event) {
   profile_.close_gaps();
 }
 
-/// Forgets pieces that have passed where all that come will lose to one of the ends of their half-edge.
+/// Discards passed pieces of half-edges where every later piece loses to one of the ends.
 void MergedPropagation::forget_passed() {
   for (; leaving_.key() < waiting_.key(); leaving_.advance())
     while (!leaving_.bucket_empty()) leaving_.drain_chunk([this](Half half) { leave(half); });
@@ -425,15 +429,15 @@ void MergedPropagation::keep(Half half) {
 
 // ---------------------------------------------------------------------------------------------- faces
 
-/// Whether the rays of a piece may be taken to go on to that of another origin through its end t.
+/// Whether a piece may be extended to the ray of another origin through its end t, within the tolerance.
 bool MergedPropagation::extends(const FrontPiece& piece, double t, const Place& ray, double reach) const {
   const Place away = Place{t, 0} - ray;
   const Place far = Place{t, 0} + (reach / norm(away)) * away;
   return piece.error + detour(piece.from, t, far) <= tolerance_ * piece.lowest();
 }
 
-/// A fresh piece goes on through the face, and what lies between its rays and those of the neighbours it touches is lit:
-/// at the right end by this piece, at the left one if the neighbour there is not fresh and has not done it.
+/// Continues a fresh piece through the face, and lights the gaps between its rays and those of adjacent pieces. This piece
+/// lights the gap at its right end, and the gap at its left end only if the piece there is not fresh.
 void MergedPropagation::cross_face(Half half, std::size_t entry) {
   const auto entries = profile_.entries();
   const FrontPiece piece = entries[entry].piece;
@@ -470,7 +474,7 @@ void MergedPropagation::cross_face(Half half, std::size_t entry) {
   go_on(half, piece, rays);
 }
 
-/// Goes on through a face between two rays through the ends of a piece.
+/// Continues a piece through a face, between two rays through the ends of the piece.
 void MergedPropagation::go_on(Half half, const FrontPiece& piece, const Rays& rays) {
   ++made_;
   const HalfRecord& r = surface_.record(half);
@@ -520,7 +524,7 @@ void MergedPropagation::go_right(Half half, const FrontPiece& piece, const Rays&
   wait(r.beyond_right, child);
 }
 
-// ---------------------------------------------------------------------------------------------- what is reached
+// ---------------------------------------------------------------------------------------------- results
 
 Reached MergedPropagation::reached_by(Half half, const FrontPiece& piece, const Place& at) const {
   double direction = piece.turn;
@@ -565,7 +569,7 @@ void MergedPropagation::run(const Progress& progress) {
   progress.step("windows", 1);
 }
 
-/// True distances lie between those found and their upper bounds.
+/// Sets distances to the midpoints between the computed ones and their upper bounds; the true ones lie in between.
 void MergedPropagation::finish() {
   for (std::size_t v = 0; v < distance_.size(); ++v) distance_[v] = 0.5 * (distance_[v] + upper_[v]);
   for (std::size_t k = 0; k < target_distance_.size(); ++k)

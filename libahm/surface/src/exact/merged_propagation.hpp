@@ -1,5 +1,5 @@
 /// \file
-/// The distance along one half-edge, as the windows that cross it have it: the lowest of them, and fewer in their place.
+/// Propagation with a tolerance: the lowest distances along each half-edge, in which adjacent windows are merged.
 #pragma once
 
 #include <optional>
@@ -11,57 +11,57 @@
 
 namespace ahm::exact {
 
-/// Rays that enter a face together, from an origin that need not be one: distances are no longer than the true ones, and
-/// less than `error` shorter.
+/// Rays that enter a face together, from an origin that may be virtual. Distances are never longer than the true ones, and
+/// shorter by less than `error`.
 struct FrontPiece {
-  double begin, end;  ///< where they cross the half-edge, from its tail
-  Place from;         ///< in the frame of the half-edge; y < 0
-  double sigma;       ///< distance of `from`
-  double error;       ///< what distances may lack
-  double turn, gain;  ///< the direction at the source is turn + gain * the angle of the ray in this frame
+  double begin, end;  ///< interval of the half-edge that the rays cross, from its tail
+  Place from;         ///< origin in the frame of the half-edge; y < 0
+  double sigma;       ///< distance of the origin
+  double error;       ///< maximum amount by which distances are too short
+  double turn, gain;  ///< the direction of a ray at the source is turn + gain * (its angle in this frame)
   std::uint32_t origin;
-  std::uint32_t next;  ///< of a list in a pool
+  std::uint32_t next;  ///< next piece of a list in the pool
 
   double at(double t) const { return sigma + exact::distance(from, {t, 0}); }
-  /// Of the distance, along the half-edge.
+  /// Derivative of the distance along the half-edge.
   double slope(double t) const { return (t - from[0]) / exact::distance(from, {t, 0}); }
   double lowest() const;
   double direction(double t) const { return gain == 0 ? turn : turn + gain * std::atan2(-from[1], t - from[0]); }
 };
 
-/// How much longer the way through a point of the half-edge to p, beyond it, is than the straight one from an origin.
+/// How much longer the path through position t of the half-edge to p is than the straight line from the origin to p.
 inline double detour(const Place& from, double t, const Place& p) {
   return exact::distance(from, {t, 0}) + distance({t, 0}, p) - distance(from, p);
 }
 
-/// When pieces may become one.
+/// Conditions for merging pieces.
 struct MergeRules {
-  double tolerance;                    ///< of the error, relative to distances
-  std::span<const Origin> origins;     ///< only pieces of one source
-  std::span<const double> full_angle;  ///< about each source; infinite at the boundary
+  double tolerance;                    ///< maximum error, relative to distances
+  std::span<const Origin> origins;     ///< only pieces of one source are merged
+  std::span<const double> full_angle;  ///< angle around each source; infinite on the boundary
 };
 
-/// Pieces side by side on a half-edge. For use again and again: it keeps its memory.
+/// Adjacent pieces on a half-edge. Reusable: it keeps its memory.
 class FrontProfile {
  public:
   struct Entry {
     FrontPiece piece;
-    bool fresh;  ///< else it has crossed the face already
+    bool fresh;  ///< whether it has not yet crossed the face
   };
 
   void clear(double length) { entries_.clear(), length_ = length; }
-  /// From left to right.
+  /// Adds a piece that has crossed the face. Calls are in order from left to right.
   void add_passed(const FrontPiece& piece) { entries_.push_back({piece, false}); }
-  /// A fresh piece, where it is lower than what is there.
+  /// Inserts a fresh piece where it is lower than the pieces there.
   void insert(const FrontPiece& piece);
   template <class Test>
   void drop_fresh_if(const Test& test) {
     std::erase_if(entries_, [&](const Entry& e) { return e.fresh && test(e.piece); });
   }
-  /// Puts one piece in the place of fresh neighbours where the error allows it. It has their distances at both ends, is no
-  /// higher between them, and its rays there open at least as wide [SSKGH05].
+  /// Replaces adjacent fresh pieces by one piece where the error allows it. The new piece has their distances at both ends, is
+  /// no higher in between, and its rays at the ends open at least as wide [SSKGH05].
   void merge(const MergeRules& rules);
-  /// Rays that are one but for rounding end and begin at one point.
+  /// Closes gaps between pieces that are only rounding.
   void close_gaps();
 
   std::span<const Entry> entries() const { return entries_; }
@@ -75,10 +75,10 @@ class FrontProfile {
   double length_ = 0;
 };
 
-/// The largest a - b between two points of the half-edge.
+/// The maximum of a - b between two points of the half-edge.
 double highest_difference(const FrontPiece& a, const FrontPiece& b, double begin, double end);
 
-/// One piece for several that touch; none where the error would be too large.
+/// Merges several adjacent pieces into one; none where the error would be too large.
 std::optional<FrontPiece> merged(std::span<const FrontProfile::Entry> run, const MergeRules& rules);
 
 class MergedPropagation final : public Propagation {
@@ -91,23 +91,23 @@ class MergedPropagation final : public Propagation {
  private:
   std::size_t bytes() const override;
 
-  /// A vertex that is an origin.
+  /// A vertex that becomes an origin.
   struct Turn {
     Index vertex;
     double distance;
   };
-  /// A half-edge on which pieces wait.
+  /// A half-edge with waiting pieces.
   struct Side {
     Half half;
     double key;
   };
-  /// Pieces of one half-edge, in the pool: those that have crossed its face from left to right, those that wait in any
-  /// order; and when they will cross.
+  /// Pieces of one half-edge, as lists in the pool, and the key at which they cross its face. Passed pieces have crossed the
+  /// face, and are in order from left to right. Waiting pieces are in any order.
   struct Lists {
     std::uint32_t passed, waiting;
     double key;
   };
-  /// The rays at both ends of what crosses a face: those of its own origin, or wider ones.
+  /// Rays at both ends of a piece that crosses a face: those of its own origin, or wider ones.
   struct Rays {
     Place first, last;
   };
@@ -138,15 +138,15 @@ class MergedPropagation final : public Propagation {
   std::uint32_t take(const FrontPiece& piece);
   void give_back(std::uint32_t piece);
 
-  double tolerance_;           ///< of the errors: twice that of the distances, which are taken from the middle
-  std::vector<double> upper_;  ///< no vertex or target is farther
-  std::vector<Lists> lists_;   ///< per half-edge
+  double tolerance_;           ///< relative, of the errors: twice that of the distances, which are midpoints
+  std::vector<double> upper_;  ///< upper bound on the distance of each vertex and target
+  std::vector<Lists> lists_;   ///< lists of each half-edge
   std::vector<FrontPiece> pool_;
   std::uint32_t free_;
-  std::vector<double> full_angle_;  ///< about each source; infinite at the boundary
+  std::vector<double> full_angle_;  ///< angle around each source; infinite on the boundary
   BucketQueue<Side> waiting_;
   BucketQueue<Turn> turns_;
-  BucketQueue<Half> leaving_;  ///< those with pieces that have passed, by when they may be of no use any more
+  BucketQueue<Half> leaving_;  ///< half-edges with passed pieces, by the key from which these may be useless
   FrontProfile profile_;
 };
 

@@ -16,18 +16,18 @@ namespace {
 
 using std::numbers::pi;
 
-/// Faces flatter than this multiple of their longest side are refused.
+/// Faces flatter than this multiple of their longest side are rejected.
 constexpr double least_height = 1e-13;
-/// Angle sums closer to 2 pi than this are flat.
+/// Angle sums that exceed 2 pi by less than this are flat.
 constexpr double flat_excess = 1e-13;
 
-constexpr const char* needs_faces = "a surface needs faces, and three tails and twins for each of them";
+constexpr const char* needs_faces = "a surface needs faces, each with three tails and three twins";
 
 [[noreturn]] void refuse(Index face, const std::string& reason) {
   throw InvalidGeometry("face " + std::to_string(face) + " " + reason);
 }
 
-/// Twice the area, from the two shorter sides, which is the most accurate.
+/// Twice the area, from the two shorter sides, which is most accurate.
 double double_area(const FaceSides& sides, const std::array<double, 3>& length) {
   const auto longest = static_cast<int>(std::max_element(length.begin(), length.end()) - length.begin());
   return cross(sides[(longest + 1) % 3], sides[(longest + 2) % 3]);
@@ -42,11 +42,11 @@ void check_face(Index face, const FaceSides& sides, const std::array<double, 3>&
   for (int k : {0, 1})
     if (std::abs(sides[0][k] + sides[1][k] + sides[2][k]) > 1e-9 * longest) refuse(face, "has sides that do not close");
   if (!(area > least_height * longest * longest))
-    refuse(face, "is degenerate: height over the longest side is " + detail::number(area / longest / longest) +
-                     " of that side; remove it or move its corners");
+    refuse(face, "is degenerate: the ratio of its height to its longest side is " +
+                     detail::number(area / longest / longest) + "; remove it or move its corners");
 }
 
-/// The layout of a triangle by lengths, by Kahan's stable form of 16 area^2.
+/// Lays out a triangle by its side lengths, with Kahan's stable form of 16 area^2.
 FaceSides lay_out(Index face, const std::array<double, 3>& l) {
   std::array<double, 3> s = l;
   std::sort(s.begin(), s.end(), std::greater<>());
@@ -65,12 +65,12 @@ void check_twin(const HalfEdges& edges, Half h) {
   const std::string where = "half-edge " + std::to_string(h) + " of face " + std::to_string(h / 3);
   if (t >= edges.size() || t == h || edges.twin[t] != h) throw InvalidGeometry(where + " and its twin are not mutual");
   const bool mirrored = edges.is_mirrored(h);
-  if (mirrored != edges.is_mirrored(t)) throw InvalidGeometry(where + " is mirrored, its twin is not");
+  if (mirrored != edges.is_mirrored(t)) throw InvalidGeometry(where + " is mirrored, but its twin is not");
   if (edges.tail[mirrored ? next(t) : t] != edges.head(h) || edges.tail[mirrored ? t : next(t)] != edges.tail[h])
     throw InvalidGeometry(where + " is glued to a side between other vertices");
 }
 
-/// One layout per face.
+/// Checks that there is one layout per face.
 void check_count(const HalfEdges& edges, std::size_t faces) {
   if (edges.tail.size() != 3 * faces) throw InvalidGeometry(needs_faces);
 }
@@ -82,7 +82,7 @@ PolyhedralSurface::PolyhedralSurface(const HalfEdges& edges, const std::function
   if (edges.tail.empty() || edges.tail.size() % 3 != 0 || edges.twin.size() != edges.tail.size() ||
       (!edges.mirrored.empty() && edges.mirrored.size() != edges.tail.size()))
     throw InvalidGeometry(needs_faces);
-  if (std::ranges::min(edges.tail) < 0) throw InvalidGeometry("a tail is negative");
+  if (std::ranges::min(edges.tail) < 0) throw InvalidGeometry("a tail is negative; vertices are numbered from 0");
   face_.resize(edges.tail.size() / 3);
   for (Index f = 0; f < face_count(); ++f) set_face(f, edges, sides_of(f));
   mean_length_ /= static_cast<double>(edges.size());
@@ -122,7 +122,7 @@ void PolyhedralSurface::set_face(Index face, const HalfEdges& edges, const FaceS
   }
 }
 
-/// Both faces of an edge give it the same length.
+/// Checks that both faces of an edge have the same length for it.
 void PolyhedralSurface::check_lengths() const {
   for (Half h = 0; h < 3 * face_count(); ++h) {
     const Half t = face_[h / 3].beyond[h % 3];
@@ -130,7 +130,7 @@ void PolyhedralSurface::check_lengths() const {
     const double here = face_[h / 3].length[h % 3], there = face_[t / 3].length[t % 3];
     if (std::abs(here - there) > 1e-9 * here)
       throw InvalidGeometry("faces " + std::to_string(h / 3) + " and " + std::to_string(t / 3) +
-                            " give their common side lengths " + detail::number(here) + " and " +
+                            " have different lengths for their common side: " + detail::number(here) + " and " +
                             detail::number(there));
   }
 }
@@ -189,7 +189,7 @@ MeshPoint PolyhedralSurface::vertex_point(Vertex vertex) const {
   const Half h = corner_[vertex.index].half;
   if (h < 0)
     throw InvalidGeometry("vertex_without_triangles", "vertex " + std::to_string(vertex.index) + " is in no triangle",
-                          "choose another one");
+                          "choose another vertex");
   MeshPoint point{h / 3, {0, 0, 0}};
   point.barycentric[h % 3] = 1;
   return point;

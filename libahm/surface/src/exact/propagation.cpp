@@ -10,8 +10,8 @@ namespace {
 
 using std::numbers::pi;
 
-/// Many times what has been seen of any mesh, and no less than the bound of [MMP87]. Windows beyond run in circles, where
-/// lengths are below the rounding of distances.
+/// Maximum number of windows: far more than any known mesh requires, and at least the bound of [MMP87]. More windows run in
+/// circles, where lengths are below the rounding error of distances.
 double max_windows(double faces) { return 1e6 + faces * faces; }
 
 }  // namespace
@@ -60,7 +60,7 @@ void Propagation::add_source(const MeshPoint& point) {
     }
   }
   if (zeros == 2) return add_vertex_source(origin2, surface_.record(first + corner).tail);
-  // The sides of the face that the source sees at an angle; those it lies on, within rounding, it sees through.
+  // Light the sides of the face. Where the source lies on a side, up to rounding, light the face beyond it instead.
   Ray ray{first, surface_.place(point), 0, origin2};
   for (int s = 0; s < 3; ++s) {
     const HalfRecord& r = surface_.record(ray.half);
@@ -92,14 +92,14 @@ void Propagation::add_vertex_source(std::uint32_t origin2, Index vertex) {
   } while (c.half >= 0 && c != first);
 }
 
-/// The same ray in the frame of the next half-edge of its face.
+/// The ray in the frame of the next half-edge of its face.
 Propagation::Ray Propagation::in_next(const Ray& ray) const {
   const double turn = pi - surface_.angle(next(ray.half));
   return {next(ray.half), exact::in_next(surface_.record(ray.half), ray.from),
           ray.turn + (ray.origin2 & 1 ? -turn : turn), ray.origin2};
 }
 
-/// A source on the right side of a half-edge lights the face beyond like its own.
+/// Handles a source on the right side of a half-edge: it lights the face beyond that side like its own face.
 void Propagation::see_beyond_right(const Ray& ray) {
   const HalfRecord& r = surface_.record(ray.half);
   if (r.beyond_right < 0) return;
@@ -114,7 +114,7 @@ void Propagation::see_beyond_right(const Ray& ray) {
   see_face(there);
 }
 
-/// Starts a window across an interval of the frame's right side.
+/// Starts a window through an interval of the right side of the ray's half-edge.
 void Propagation::light_right(const Ray& ray, double begin, double end) {
   const HalfRecord& r = surface_.record(ray.half);
   if (r.beyond_right < 0 || !(end - begin > least_width * r.right)) return;
@@ -123,7 +123,7 @@ void Propagation::light_right(const Ray& ray, double begin, double end) {
   start(w);
 }
 
-/// The window through an interval of the right side, from its apex, as the face beyond sees it.
+/// The window through an interval of the right side, measured from its apex, in the frame of the face beyond.
 Window Propagation::beyond_right(const Ray& ray, double begin, double end) const {
   const HalfRecord& r = surface_.record(ray.half);
   const double turn = surface_.angle(next(ray.half));
@@ -138,7 +138,7 @@ void Propagation::mirror(Window& w, double length) {
        w.half,         w.origin2 ^ 1};
 }
 
-/// Lights the face of a corner from its vertex, between two angles from its half-edge.
+/// Lights the face of a corner from its vertex, between two angles measured from the corner's half-edge.
 void Propagation::light_corner(const Ray& ray, double low, double high) {
   const HalfRecord& r = surface_.record(ray.half);
   const double angle = surface_.angle(ray.half), sigma = origins_[ray.origin2 / 2].distance;
@@ -153,7 +153,7 @@ void Propagation::light_corner(const Ray& ray, double low, double high) {
   see_face(ray);
 }
 
-// ---------------------------------------------------------------------------------------------- what is reached
+// ---------------------------------------------------------------------------------------------- results
 
 Reached Propagation::reach(const Ray& ray, const Place& at) const {
   const auto origin = static_cast<Index>(ray.origin2 / 2);
@@ -162,7 +162,7 @@ Reached Propagation::reach(const Ray& ray, const Place& at) const {
   return {ray.half, origin, ray.from, ray.turn + (ray.origin2 & 1 ? -angle : angle)};
 }
 
-/// Offers straight ways to all targets in the face that a ray starts in.
+/// Offers straight paths to all targets in the face where a ray starts.
 void Propagation::see_face(const Ray& ray) {
   if (!has_targets()) return;
   see_targets(
@@ -181,7 +181,7 @@ void Propagation::copy_vertex_targets() {
 void Propagation::check_count() const {
   if (static_cast<double>(made_) > max_windows(surface_.face_count()))
     throw InvalidGeometry("windows_without_end", "windows without end: lengths of sides differ too much",
-                          "repair the mesh, or use heat");
+                          "repair the mesh, or use the heat method");
 }
 
 Found Propagation::found() && {
@@ -203,12 +203,12 @@ namespace {
 
 using std::numbers::pi;
 
-/// Rays to a vertex that cross a side closer than this multiple of it may be one ray, past a vertex they both touch.
+/// Rays to a vertex that cross a side closer than this multiple of it may be one ray, past a vertex that both touch.
 constexpr double same_ray = 1e-10;
-/// Angle by which rays past a vertex miss it where the surface is flat up to rounding: what many such vertices on one line add up
-/// to is more than a share of a side, far away.
+/// Angle by which rays past a vertex may miss it where the surface is flat up to rounding. The errors of many such vertices on
+/// one line add up, far away, to more than `window_margin` of a side.
 constexpr double missed_angle = 1e-12;
-/// Added to both ends of the angles that open behind a vertex.
+/// Margin at both ends of the range of angles behind a vertex.
 constexpr double wedge_margin = 1e-12;
 
 }  // namespace
@@ -234,7 +234,7 @@ void ExactPropagation::nearer(std::size_t row, double distance, double /*error*/
 
 // ---------------------------------------------------------------------------------------------- bends
 
-/// Shortest paths go on behind a vertex where both sides have at least pi.
+/// Continues shortest paths behind a vertex, where both sides have an angle of at least pi.
 void ExactPropagation::bend(const Bend& event) {
   const Index v = event.vertex;
   if (event.distance > distance_[v]) return;
@@ -253,8 +253,8 @@ void ExactPropagation::bend(const Bend& event) {
   }
 }
 
-/// Turns left from a corner, whose right side is at the angle `turned` from the way in, and lights what lies between pi
-/// and `high`.
+/// Turns left from a corner and lights the angles between pi and `high`. `turned` is the angle from the incoming path to the
+/// right side of the corner.
 void ExactPropagation::fill(Corner c, double turned, double high, std::uint32_t origin2) {
   constexpr double low = pi - wedge_margin;
   for (; c.half >= 0 && turned < high; c = surface_.turn_left(c)) {
@@ -270,7 +270,7 @@ void ExactPropagation::fill(Corner c, double turned, double high, std::uint32_t 
 
 // ---------------------------------------------------------------------------------------------- windows
 
-/// Keeps a window for later.
+/// Queues a window.
 void ExactPropagation::push(const Window& w, double sigma, double at_begin, double at_end) {
   const bool across = w.from[0] >= w.begin && w.from[0] <= w.end;
   const double key = across ? sigma - w.from[1] : std::min(at_begin, at_end);
@@ -279,7 +279,7 @@ void ExactPropagation::push(const Window& w, double sigma, double at_begin, doub
   ++made_;
 }
 
-/// Whether no shortest path crosses a window, since one of the ends of its half-edge is nearer [XW09].
+/// Whether no shortest path crosses a window, because one of the ends of its half-edge is nearer [XW09].
 bool ExactPropagation::loses(const Window& w, double at_begin, double at_end) const {
   const HalfRecord& r = surface_.record(w.half);
   return at_end > (distance_[r.tail] + w.end) * slack || at_begin > (distance_[r.head] + r.length - w.begin) * slack;
@@ -289,7 +289,7 @@ void ExactPropagation::cross_face(const Window& w) {
   const HalfRecord& r = surface_.record(w.half);
   const double sigma = origins_[w.origin()].distance;
   const double at_begin = sigma + distance(w.from, {w.begin, 0}), at_end = sigma + distance(w.from, {w.end, 0});
-  if (loses(w, at_begin, at_end)) return;  // again: distances may have become shorter while it waited
+  if (loses(w, at_begin, at_end)) return;  // again, as distances may have become shorter since it was queued
   if (has_targets()) see_targets_of(w, sigma);
 
   const double crossing = crossing_to(w.from, apex(r));
@@ -300,7 +300,7 @@ void ExactPropagation::cross_face(const Window& w) {
   if (crossing > w.begin - beside && crossing < w.end + beside) {
     to_apex = sigma + distance(w.from, apex(r));
     offer(r.apex, to_apex, {w.half, w.from, w.turn, w.origin2}, apex(r));
-    // One angle, one split [CH90].
+    // Only one window continues on both sides of the apex: one angle, one split [CH90].
     Sighting& best = sighting_[w.half];
     if (to_apex < best.distance) {
       best = {to_apex, crossing};
@@ -314,8 +314,8 @@ void ExactPropagation::cross_face(const Window& w) {
   if (right && r.beyond_right >= 0) go_right(w, r, sigma, crossing > w.begin ? to_apex : 0);
 }
 
-/// Whether all rays of a window to the right (left) of the apex cross the way from the origin of the best one to the apex.
-/// Some may pass that origin where it is a source inside the window, one of several.
+/// Whether all rays of a window to the right (left) of the apex cross the line from the best window's origin to the apex. With
+/// several sources, some rays may pass that origin, if it is a source inside the window.
 bool ExactPropagation::hides(const Window& w, bool right) const {
   if (sighting_from_.empty()) return true;
   const Sighting& best = sighting_[w.half];
@@ -324,8 +324,8 @@ bool ExactPropagation::hides(const Window& w, bool right) const {
   return right ? last <= best.crossing || beyond < 0 : last >= best.crossing || beyond > 0;
 }
 
-/// The part of a window that goes on through the side tail - apex.
-/// @param to_apex  sigma and the distance of the apex where the window ends there, else 0
+/// Queues the part of a window that continues through the side tail-apex.
+/// @param to_apex  distance of the apex where the window ends there, otherwise 0
 void ExactPropagation::go_left(const Window& w, const HalfRecord& r, double sigma, double to_apex) {
   const double begin = std::max(0.0, hit_left(r, w.from, w.begin));
   const double end = to_apex > 0 ? r.left : std::min(r.left, hit_left(r, w.from, w.end));
@@ -342,7 +342,7 @@ void ExactPropagation::go_left(const Window& w, const HalfRecord& r, double sigm
   push(child, sigma, at_begin, at_end);
 }
 
-/// The part that goes on through the side apex - head.
+/// Queues the part of a window that continues through the side apex-head.
 void ExactPropagation::go_right(const Window& w, const HalfRecord& r, double sigma, double to_apex) {
   const double begin = to_apex > 0 ? 0 : std::max(0.0, hit_right(r, w.from, w.begin));
   const double end = std::min(r.right, hit_right(r, w.from, w.end));
@@ -396,13 +396,13 @@ std::size_t ExactPropagation::bytes() const {
 
 namespace {
 
-/// A straight piece of a line that would be shorter beyond a vertex beside it.
+/// A straight piece of a line that would be shorter on the other side of a nearby vertex.
 struct Shortcut {
   Bend around;  ///< the vertex
-  double gain;  ///< of length, if nothing else is in the way
+  double gain;  ///< reduction of length, if nothing else is in between
 };
 
-/// What a straight piece from a to b gains on the other side of a vertex of its strip; <= 0: nothing.
+/// Reduction of length where a straight piece from a to b moves to the other side of a vertex of its strip; <= 0: none.
 double gain_beyond(double angle_sum, const Place& vertex, const Place& a, const Place& b) {
   const Vec2 back = a - vertex, ahead = b - vertex;
   const double here = angle_between(back, ahead), there = angle_sum - here;
@@ -411,7 +411,7 @@ double gain_beyond(double angle_sum, const Place& vertex, const Place& a, const 
   return distance(a, b) - std::sqrt((p - q) * (p - q) + 4 * p * q * sine * sine);
 }
 
-/// Shortcuts past the vertices on one side, along the straight piece before bend `to`.
+/// Collects shortcuts past the vertices on one side of the straight piece before bend `to`.
 void collect(const PolyhedralSurface& surface, const Strip& strip, const TautLine& line, std::size_t to, bool left,
              std::vector<Shortcut>& found) {
   const Bend &from = line.bends[to - 1], &next = line.bends[to];

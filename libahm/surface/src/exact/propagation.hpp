@@ -1,5 +1,5 @@
 /// \file
-/// Points of a surface as the algorithms take them.
+/// Propagation of windows over a polyhedral surface, and the frames and queues that it uses.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +19,7 @@
 
 namespace ahm::exact {
 
-/// The point with weights that sum to 1, those below 1e-14 made zero.
+/// Checks a point. Returns it with weights that sum to 1; weights below 1e-14 become zero.
 /// @throws InvalidArgument
 inline MeshPoint checked(const PolyhedralSurface& surface, MeshPoint point, const std::string& name) {
   auto& b = point.barycentric;
@@ -36,7 +36,7 @@ inline MeshPoint checked(const PolyhedralSurface& surface, MeshPoint point, cons
   return point;
 }
 
-/// The vertex of a checked point with two zero weights; else -1.
+/// The vertex of a checked point with two zero weights; -1 otherwise.
 inline Index vertex_of(const PolyhedralSurface& surface, const MeshPoint& point) {
   Index vertex = -1;
   for (int s = 0; s < 3; ++s) {
@@ -48,8 +48,8 @@ inline Index vertex_of(const PolyhedralSurface& surface, const MeshPoint& point)
   return vertex;
 }
 
-/// Items by ascending key, in any order within a bucket [XWLLH15]. Keys more than the ring of buckets ahead wait in its last
-/// bucket: they come too early, which costs the algorithm time and nothing else. Memory grows by chunks and is used again.
+/// A queue of items by ascending key, in any order within a bucket [XWLLH15]. Items whose keys are beyond the ring of buckets
+/// are stored in its last bucket. They come out too early, which costs only time. Memory grows by chunks and is reused.
 template <class Item>
 class BucketQueue {
  public:
@@ -74,13 +74,13 @@ class BucketQueue {
   }
 
   bool empty() const { return size_ == 0; }
-  /// The lower end of the current bucket.
+  /// Lower end of the current bucket.
   double key() const { return static_cast<double>(bucket_) / inverse_width_; }
   bool bucket_empty() const { return first_[bucket_ % ring] == none; }
-  /// Goes on to the next bucket.
+  /// Moves to the next bucket.
   void advance() { ++bucket_; }
 
-  /// Takes the chunk on top of the current bucket out and calls visit(item) for its items; pushing meanwhile is fine.
+  /// Removes the top chunk of the current bucket and calls visit(item) for each of its items. `visit` may push items.
   template <class Visit>
   void drain_chunk(const Visit& visit) {
     std::uint32_t& head = first_[bucket_ % ring];
@@ -115,51 +115,53 @@ class BucketQueue {
 
   double inverse_width_;
   std::uint64_t bucket_ = 0;
-  std::vector<std::uint32_t> first_;  ///< per bucket of the ring
+  std::vector<std::uint32_t> first_;  ///< top chunk of each bucket in the ring
   std::vector<std::unique_ptr<Chunk>> chunks_;
   std::uint32_t free_ = none;
   std::uint64_t size_ = 0;
 };
 
-/// A point or source in the frame of a half-edge.
+/// A point or an origin in the frame of a half-edge.
 using Place = Vec2;
 
 inline double distance(const Place& a, const Place& b) { return norm(a - b); }
-/// In [0, pi].
+/// The angle between two vectors, in [0, pi].
 inline double angle_between(const Vec2& a, const Vec2& b) { return std::abs(std::atan2(cross(a, b), dot(a, b))); }
 inline Place apex(const HalfRecord& r) { return {r.apex_x, r.apex_y}; }
 
-/// In the frame of the half-edge beyond the left side, which runs from the tail to the apex (glued without mirroring).
+/// Converts a place to the frame of the half-edge across the left side, which runs from the tail to the apex (glued without
+/// mirroring).
 inline Place beyond_left(const HalfRecord& r, const Place& p) {
   const double scale = 1 / r.left;
   return {(p[0] * r.apex_x + p[1] * r.apex_y) * scale, (p[1] * r.apex_x - p[0] * r.apex_y) * scale};
 }
 
-/// In the frame of the half-edge beyond the right side, which runs from the apex to the head (glued without mirroring).
+/// Converts a place to the frame of the half-edge across the right side, which runs from the apex to the head (glued without
+/// mirroring).
 inline Place beyond_right(const HalfRecord& r, const Place& p) {
   const double scale = 1 / r.right, c = r.back_x * scale, s = r.apex_y * scale, x = p[0] - r.length;
   return {r.right + x * c - p[1] * s, x * s + p[1] * c};
 }
 
-/// In the frame of the next half-edge of the same face.
+/// Converts a place to the frame of the next half-edge of the same face.
 inline Place in_next(const HalfRecord& r, const Place& p) {
   const Place q = beyond_right(r, p);
   return {r.right - q[0], -q[1]};
 }
 
-/// In the frame of the previous half-edge of the same face.
+/// Converts a place to the frame of the previous half-edge of the same face.
 inline Place in_previous(const HalfRecord& r, const Place& p) {
   const Place q = beyond_left(r, p);
   return {r.left - q[0], -q[1]};
 }
 
-/// Where the ray from an origin below a half-edge to a point above crosses its line.
+/// Where the ray from an origin below a half-edge to a point above it crosses the line of the half-edge.
 inline double crossing_to(const Place& from, const Place& at) {
   return from[0] - (at[0] - from[0]) * from[1] / (at[1] - from[1]);
 }
 
-/// Where the ray from an origin below a half-edge through t on it hits the line of the left side (from the tail on) or of
-/// the right side (from the apex on).
+/// Where the ray from an origin below a half-edge through position t on it crosses the line of the left or right side. Positions
+/// on the left side are measured from the tail, on the right side from the apex.
 inline double hit_left(const HalfRecord& r, const Place& from, double t) {
   const double down = -from[1];
   return t * down / (down * r.apex_x + (from[0] - t) * r.apex_y) * r.left;
@@ -169,7 +171,7 @@ inline double hit_right(const HalfRecord& r, const Place& from, double t) {
   return r.right - u * down / (down * r.back_x + (r.length - from[0] - u) * r.apex_y) * r.right;
 }
 
-/// Points of these sides.
+/// The point at position t of the left side, and of the right side.
 inline Place on_left(const HalfRecord& r, double t) {
   const double part = t / r.left;
   return {part * r.apex_x, part * r.apex_y};
@@ -179,47 +181,47 @@ inline Place on_right(const HalfRecord& r, double t) {
   return {r.length - part * r.back_x, part * r.apex_y};
 }
 
-/// Straight rays from one origin that enter a face together.
+/// A window: straight rays from one origin that enter a face together.
 struct Window {
-  double begin, end;      ///< where they cross the half-edge, from its tail
-  Place from;             ///< the origin in the frame of the half-edge; y < 0
-  double turn;            ///< the direction of a ray at the source is turn + its angle in this frame, or turn - it
-  Half half;              ///< of the face they enter
-  std::uint32_t origin2;  ///< twice the origin, plus 1 where the frame is a mirror image of the source's
+  double begin, end;      ///< interval of the half-edge that the rays cross, from its tail
+  Place from;             ///< origin in the frame of the half-edge; y < 0
+  double turn;            ///< direction of a ray at the source: turn + its angle in this frame; minus if mirrored
+  Half half;              ///< half-edge of the face that the rays enter
+  std::uint32_t origin2;  ///< twice the origin's number, plus 1 where the frame is a mirror image of the source's
 
   std::size_t origin() const { return origin2 >> 1; }
   bool mirrored() const { return (origin2 & 1) != 0; }
 };
 
-/// What is known of a vertex or target besides its distance.
+/// Properties of a reached vertex or target, except its distance.
 struct Reached {
-  Half half = -1;  ///< as `Arrival`
+  Half half = -1;  ///< as in `Arrival`
   Index origin = -1;
   Place from{};
-  double direction = 0;  ///< by true angles
+  double direction = 0;  ///< direction at the source, as an unscaled angle
 };
 
-/// What a propagation leaves.
+/// Results of a propagation.
 struct Found {
   std::vector<double> distance, target_distance;  ///< infinite: not reached
   std::vector<Reached> reached;                   ///< vertices, then targets
-  std::vector<Origin> origins;                    ///< sources first; directions by true angles
-  double horizon;                                 ///< up to here distances are final
+  std::vector<Origin> origins;                    ///< sources first; directions are unscaled angles
+  double horizon;                                 ///< distances up to this are final
   ExactStatistics statistics;
 };
 
-/// How far beside a window a point still counts as covered, and how wide a window must be; relative to the side.
+/// Margin around a window in which points are still covered, and minimum width of a window; relative to the side.
 inline constexpr double window_margin = 1e-12, least_width = 1e-14;
-/// A window is dropped where it loses to a known distance by more than this, relatively.
+/// A window is dropped where its distance exceeds a known distance by more than this factor.
 inline constexpr double slack = 1 + 1e-12;
 /// Width of a bucket in mean side lengths.
 inline constexpr double bucket_width = 0.25;
 
-/// Whether an origin lies on the line of a side, in its frame. Rays that meet a side at a smaller angle, or from its other
-/// side by rounding, run along it; its ends see them.
+/// Whether an origin lies on the line of a side, in the side's frame. Rays that meet the side at a smaller angle, or from its
+/// other side by rounding, run along it. They are handled at the ends of the side.
 inline bool on_line(const Place& from, double length) { return !(-from[1] > 1e-15 * (std::abs(from[0]) + length)); }
 
-/// One run from a set of sources. Sources first, then `run`, then what it found.
+/// One propagation from a set of sources. Call `add_source` for all sources, then `run`, then `found`.
 class Propagation {
  public:
   Propagation(const PolyhedralSurface& surface, const ExactOptions& options, std::span<const MeshPoint> targets);
@@ -231,13 +233,13 @@ class Propagation {
   /// @throws Cancelled, InvalidGeometry (fault windows_without_end)
   virtual void run(const Progress& progress) = 0;
 
-  /// Ends it.
+  /// Returns the results and ends the propagation.
   Found found() &&;
 
  protected:
-  virtual std::size_t bytes() const;  ///< that are held
+  virtual std::size_t bytes() const;  ///< memory in use
 
-  /// What leaves an origin that lies in the face of a half-edge, in its frame; as in `Window`.
+  /// Rays that leave an origin in the face of a half-edge, in the frame of the half-edge. Members are as in `Window`.
   struct Ray {
     Half half;
     Place from;
@@ -246,16 +248,16 @@ class Propagation {
   };
   static constexpr double infinity = std::numeric_limits<double>::infinity();
 
-  /// A window that starts at an origin.
+  /// Handles a window that starts at an origin.
   virtual void start(const Window& w) = 0;
-  /// Vertex or, from the number of the vertices on, target `row` has become nearer.
-  /// @param error  how far above that its true distance may be
+  /// Handles a shorter distance of a vertex. `row` is its number; for targets, the number of vertices plus that of the target.
+  /// @param error  maximum amount by which the true distance is longer
   virtual void nearer(std::size_t row, double distance, double error) = 0;
-  /// No target is farther.
+  /// Upper bound on the distances of all targets.
   virtual double farthest_target() = 0;
 
-  /// Takes both queues in the order of their buckets, what starts at vertices first, as far as the horizon or until
-  /// nothing that waits can reach a target any earlier.
+  /// Processes both queues in the order of their buckets, vertices first. Ends at the horizon, or when nothing in the queues
+  /// can reach a target earlier.
   template <class Vertices, class AtVertex, class Windows, class AtWindow>
   void drain(Vertices& vertices, const AtVertex& at_vertex, Windows& windows, const AtWindow& at_window,
              const Progress& progress);
@@ -265,7 +267,7 @@ class Propagation {
   static void mirror(Window& w, double length);
 
   Reached reach(const Ray& ray, const Place& at) const;
-  /// Takes a shorter distance of a vertex; false: it is none.
+  /// Sets a shorter distance of a vertex; returns false if it is not shorter.
   bool shorten(Index vertex, double distance) {
     if (!(distance < distance_[vertex])) return false;
     if (distance_[vertex] == infinity) ++met_;
@@ -278,19 +280,21 @@ class Propagation {
     nearer(static_cast<std::size_t>(vertex), distance, origin_error(ray.origin2 / 2));
   }
   bool has_targets() const { return !targets_of_face_.empty(); }
-  /// Offers straight ways to the targets in the face of a half-edge.
-  /// @param sigma    the distance of the origin `from`, which is in the frame of the half-edge, as is `at`
-  /// @param covers   covers(at): whether rays get there
-  /// @param reached  reached(at) of a target
-  /// @param error    error(at) of its distance
+  /// Offers straight paths to the targets in the face of a half-edge.
+  /// @param from     origin, in the frame of the half-edge
+  /// @param sigma    distance of the origin
+  /// @param covers   covers(at): whether rays reach the place `at`, in the frame of the half-edge
+  /// @param reached  reached(at): properties of a target there
+  /// @param error    error(at): error of its distance
   template <class Covers, class Reach, class Error>
   void see_targets(Half half, const Place& from, double sigma, const Covers& covers, const Reach& reached,
                    const Error& error);
   double origin_error(std::size_t origin) const {
     return origin < sources_ || origin_error_.empty() ? 0.0 : origin_error_[origin - sources_];
   }
-  /// A target at a vertex is that vertex.
+  /// Copies the results of vertices to the targets at these vertices.
   void copy_vertex_targets();
+  /// Checks the number of windows.
   /// @throws InvalidGeometry where windows run in circles
   void check_count() const;
   double fraction() const { return met_ / static_cast<double>(distance_.size()); }
@@ -298,13 +302,13 @@ class Propagation {
   const PolyhedralSurface& surface_;
   double horizon_;
   bool only_targets_;
-  Offset most_windows_;  ///< 0: no limit
+  Offset most_windows_;  ///< maximum number of windows; 0: no limit
   std::size_t sources_ = 0;
   std::vector<double> distance_, target_distance_;
   std::vector<Reached> reached_;
   std::vector<Origin> origins_;
-  std::vector<double> origin_error_;  ///< of those after the sources; empty: none
-  std::vector<Index> target_vertex_;  ///< -1: none
+  std::vector<double> origin_error_;  ///< errors of the origins after the sources; empty: 0
+  std::vector<Index> target_vertex_;  ///< vertex of each target; -1: none
   Offset made_ = 0;
 
  private:
@@ -315,10 +319,10 @@ class Propagation {
   Window beyond_right(const Ray& ray, double begin, double end) const;
   void see_face(const Ray& ray);
 
-  std::vector<Vec2> targets_;            ///< in the frame of side 0 of their faces
-  std::vector<Index> target_order_;      ///< by face
-  std::vector<Offset> targets_of_face_;  ///< faces + 1; empty: none
-  Index met_ = 0;                        ///< vertices that were offered a distance
+  std::vector<Vec2> targets_;            ///< positions of the targets in the frame of side 0 of their faces
+  std::vector<Index> target_order_;      ///< numbers of the targets, sorted by face
+  std::vector<Offset> targets_of_face_;  ///< first entry of each face in `target_order_`, faces + 1; empty: no targets
+  Index met_ = 0;                        ///< number of vertices with a distance
 };
 
 template <class Vertices, class AtVertex, class Windows, class AtWindow>
@@ -377,12 +381,12 @@ class ExactPropagation final : public Propagation {
  private:
   std::size_t bytes() const override;
 
-  /// A vertex whose shortest path may bend there.
+  /// A vertex at which shortest paths may bend.
   struct Bend {
     Index vertex;
     double distance;
   };
-  /// The apex of a half-edge as the best of the windows that cross the half-edge sees it.
+  /// The apex of a half-edge, as reached by the best of the windows that cross the half-edge.
   struct Sighting {
     double distance;
     double crossing;
@@ -403,8 +407,8 @@ class ExactPropagation final : public Propagation {
   void see_targets_of(const Window& w, double sigma);
   double farthest_target() override;
 
-  std::vector<Sighting> sighting_;    ///< per half-edge
-  std::vector<Place> sighting_from_;  ///< where that window comes from; empty: no matter
+  std::vector<Sighting> sighting_;    ///< best window of each half-edge
+  std::vector<Place> sighting_from_;  ///< origin of that window; empty: not needed
   BucketQueue<Window> windows_;
   BucketQueue<Bend> bends_;
 };

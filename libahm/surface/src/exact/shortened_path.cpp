@@ -19,7 +19,7 @@ Half corner_at(const PolyhedralSurface& surface, Index face, Index vertex) {
   return -1;
 }
 
-/// A point of a curve: a vertex, a point of a side, or of the inside of a face.
+/// A point of a curve: a vertex, a point on a side, or a point inside a face.
 struct Spot {
   MeshPoint point;
   Index vertex = -1;
@@ -55,11 +55,11 @@ struct Spot {
   }
 };
 
-/// Faces met in one direction about a vertex up to one that holds a point.
+/// The faces around a vertex in one direction, up to one that contains a point.
 struct Search {
   std::vector<Half> entered;
-  Half corner = -1;  ///< in the face found; -1: there is none
-  double angle = 0;  ///< of the faces between
+  Half corner = -1;  ///< corner of the face that contains the point; -1: none
+  double angle = 0;  ///< sum of the angles of the faces in between
 
   Search(const PolyhedralSurface& surface, Half from, const Spot& wanted, bool left) {
     Corner c{from, true};
@@ -78,7 +78,7 @@ struct Search {
 
 [[noreturn]] void refuse(std::size_t number) {
   throw InvalidArgument("points " + std::to_string(number) + " and " + std::to_string(number + 1) +
-                        " of the curve lie in no common face");
+                        " of the curve have no common face");
 }
 
 }  // namespace
@@ -132,7 +132,7 @@ std::optional<std::vector<Half>> turn(const PolyhedralSurface& surface, Half fro
 }
 
 Strip strip_along(const PolyhedralSurface& surface, std::span<const MeshPoint> curve) {
-  if (curve.size() < 2) throw InvalidArgument("a curve needs two points");
+  if (curve.size() < 2) throw InvalidArgument("a curve needs at least 2 points");
   Strip strip;
   Spot at(surface, curve[0], 0);
   Index face = -1;
@@ -169,18 +169,18 @@ Strip strip_along(const PolyhedralSurface& surface, std::span<const MeshPoint> c
 
 namespace {
 
-/// A line that passes a vertex at a smaller angle than this bends there: only then is its other side looked at.
+/// A line that passes a vertex at a smaller angle than this bends there, so that its other side is considered.
 constexpr double touching = 1e-12;
 
 Place turned_left(const Place& v) { return {-v[1], v[0]}; }
 
-/// The side of a face left, in the frame of side 0: seen from inside its head is on the left.
+/// The side through which a face is left, in the frame of side 0. Seen from inside the face, its head is on the left.
 Portal first_portal(const PolyhedralSurface& surface, Half side, bool mirrored) {
   const HalfRecord& r = surface.record(side);
   return {to_first_side(surface, side, {r.length, 0}), to_first_side(surface, side, {0, 0}), !mirrored};
 }
 
-/// The frame of a half-edge that enters a face, unfolded.
+/// The unfolded frame of a half-edge that enters a face.
 struct Unfolded {
   Place tail, along, up;
 
@@ -194,7 +194,7 @@ struct Unfolded {
   Place into(const Place& p) const { return {dot(p - tail, along), dot(p - tail, up)}; }
 };
 
-/// The next side crossed: one end stays, the other one is the apex.
+/// The next portal: one end stays, the other one is the apex.
 Portal next_portal(const PolyhedralSurface& surface, const Portal& portal, Half entered, Half side) {
   const Place top = Unfolded(portal).out_of(apex(surface.record(entered)));
   const bool keeps_tail = side == previous(entered), forward = portal.tail_left;
@@ -213,19 +213,19 @@ std::vector<Portal> unfold(const PolyhedralSurface& surface, const Strip& strip)
   return portals;
 }
 
-/// The funnel: from an apex two chains that bend outwards, to the ends of the portal reached.
+/// The funnel: two chains that bend outward, from an apex to the ends of the last portal.
 class Funnel {
  public:
   explicit Funnel(const Place& start) : left_{0}, right_{0} { nodes_.push_back({start, -1, false, 0, 0}); }
 
-  /// The portal's end on one side is another one than before.
+  /// Adds an end of a portal that differs from the one before on this side.
   void add(const Place& at, bool left, std::size_t portal) {
     auto& own = left ? left_ : right_;
     auto& other = left ? right_ : left_;
     auto& own_apex = left ? left_apex_ : right_apex_;
     auto& other_apex = left ? right_apex_ : left_apex_;
     const double sign = left ? 1 : -1;
-    // The sine by which the way from a by b to `at` turns outwards; where it is none, whether the way goes on ahead.
+    // `turn`: sine of the outward turn at b of the line from a to b to `at`. `is_ahead` decides where it is near zero.
     const auto turn = [&](std::size_t a, std::size_t b) {
       const Vec2 to_b = nodes_[b].at - nodes_[a].at, on = at - nodes_[b].at;
       return sign * cross(to_b, on) / (norm(to_b) * norm(on));
@@ -241,7 +241,7 @@ class Funnel {
       own.pop_back();
     }
     if (own.size() - own_apex == 1) {
-      // The new end may lie beyond the other chain; not where the start lies between both ends of its portal.
+      // The new end may lie beyond the other chain, except where the start lies between both ends of its portal.
       while (other.size() - other_apex > 1) {
         const std::size_t a = other[other_apex], b = other[other_apex + 1];
         const double sine = turn(a, b);
@@ -254,11 +254,11 @@ class Funnel {
     nodes_.push_back({at, static_cast<std::ptrdiff_t>(own.back()), left, portal, portal});
     own.push_back(nodes_.size() - 1);
   }
-  /// The portal keeps an end.
+  /// Records that a portal has the same end as the one before.
   void keep(bool left, std::size_t portal) { nodes_[latest_[left]].last = portal; }
   void set_latest(bool left) { latest_[left] = nodes_.size() - 1; }
 
-  /// From the start to the node added last.
+  /// The bends from the start to the last added node.
   std::vector<Bend> bends() const {
     std::vector<std::size_t> chain;
     for (auto k = static_cast<std::ptrdiff_t>(nodes_.size()) - 1; k >= 0; k = nodes_[k].parent)
@@ -266,7 +266,7 @@ class Funnel {
     std::reverse(chain.begin(), chain.end());
     std::vector<Bend> result;
     for (std::size_t k : chain) result.push_back({nodes_[k].at, nodes_[k].left, nodes_[k].first, nodes_[k].last});
-    // Two bends that are the ends of one portal: the line runs along it.
+    // Where two bends are the ends of one portal, the line runs along the portal.
     for (std::size_t k = 1; k + 2 < result.size(); ++k) {
       Bend &a = result[k], &b = result[k + 1];
       if (a.left == b.left || a.leaves < b.arrives) continue;
@@ -280,10 +280,10 @@ class Funnel {
     Place at;
     std::ptrdiff_t parent;
     bool left;
-    std::size_t first, last;  ///< portals that end here
+    std::size_t first, last;  ///< first and last portal that end here
   };
   std::vector<Node> nodes_;
-  std::vector<std::size_t> left_, right_;  ///< chains; entries before the apex have been passed
+  std::vector<std::size_t> left_, right_;  ///< chains; entries before the apex are already passed
   std::size_t left_apex_ = 0, right_apex_ = 0;
   std::size_t latest_[2] = {0, 0};
 };
@@ -344,7 +344,7 @@ using std::numbers::pi;
 
 const Place& other_end(const Portal& portal, const Bend& bend) { return bend.left ? portal.right : portal.left; }
 
-/// The angle at a bend on the side of the strip.
+/// The angle at a bend, on the side of the strip.
 double angle_in_strip(const PolyhedralSurface& surface, const Strip& strip, const TautLine& line, std::size_t k) {
   const Bend& bend = line.bends[k];
   const auto to_edge = [&](const Bend& neighbor, std::size_t portal) {
@@ -355,8 +355,8 @@ double angle_in_strip(const PolyhedralSurface& surface, const Strip& strip, cons
   return sum;
 }
 
-/// Takes the strip around the other side of bends where that is shorter, apart from each other.
-/// @return whether there was one
+/// Moves the strip to the other side of bends where the line is shorter there. Skips bends that overlap the one before.
+/// @return whether there was such a bend
 bool flip_bends(const PolyhedralSurface& surface, Strip& strip, const TautLine& line) {
   std::vector<Half> entered;
   std::size_t done = 0;
@@ -378,7 +378,7 @@ bool flip_bends(const PolyhedralSurface& surface, Strip& strip, const TautLine& 
 }
 
 /// The direction in which a line leaves an end, as in `ExactMap::direction`.
-/// @param towards  in the frame of side 0 of the face of the end
+/// @param towards  next point of the line, in the frame of side 0 of the end's face
 double direction_at(const PolyhedralSurface& surface, const CurveEnd& end, const Place& towards) {
   if (end.corner >= 0) {
     const Index vertex = surface.record(end.corner).tail;
@@ -403,7 +403,7 @@ std::optional<std::vector<Half>> other_side(const PolyhedralSurface& surface, co
   const Half first = strip.entered[bend.arrives], side = beyond(surface, first);
   const bool at_tail = line.portals[bend.arrives].tail_left == bend.left;
   const Half from = at_tail == mirrored_beyond(surface, side) ? side : next(side);
-  // As the face before sees it: the side crossed is the right one of the corner that it starts at, else the left one.
+  // Seen from the face before, the crossed side is the right side of the corner that it starts at, otherwise the left side.
   const bool left_now = from != side;
   return turn(surface, from, corner_after(strip, line, bend, bend.leaves), !left_now);
 }
@@ -421,7 +421,7 @@ TautLine shorten(const PolyhedralSurface& surface, Strip& strip) {
     if (!flip_bends(surface, flipped, line)) return line;
     trim(surface, flipped);
     TautLine shorter = pull_taut(surface, flipped);
-    if (!(shorter.length < line.length)) return line;  // by rounding
+    if (!(shorter.length < line.length)) return line;  // no improvement beyond rounding
     strip = std::move(flipped);
     line = std::move(shorter);
   }
@@ -464,12 +464,12 @@ namespace {
 using std::numbers::pi;
 using Halves = std::vector<Half>;
 
-/// Turns of a loop that are laid one behind the other to find where it bends for good.
+/// Maximum number of turns of a loop that are concatenated to find where it bends permanently.
 constexpr int most_turns = 4096;
-/// Moves of the base; every one makes the loop shorter.
+/// Maximum number of moves of the base. Every move makes the loop shorter.
 constexpr int most_moves = 1000000;
 
-/// A closed walk over faces, and the loop in it through a base.
+/// A closed walk over faces, and the loop in it through a base point.
 class Loop {
  public:
   Loop(const PolyhedralSurface& surface, std::span<const MeshPoint> curve) : surface_(surface) {
@@ -491,50 +491,51 @@ class Loop {
       if (walk.empty()) return shrunk();
       if (!take_base(walk, bends)) return path_along(surface_, strip_, line_);
     }
-    throw Error("a loop was still getting shorter after " + std::to_string(most_moves) + " moves");
+    throw Error("a loop still became shorter after " + std::to_string(most_moves) + " moves");
   }
 
  private:
-  /// What leads from the last face of the strip to its first, by the side of the base on which the loop is shorter; none
-  /// where it is taut there.
+  /// Half-edges from the last face of the strip to its first, around the side of the base on which the loop is shorter; none
+  /// where the loop is taut at the base.
   std::optional<Halves> closed_at_base() const {
     const Half out = strip_.start.corner, in = strip_.end.corner;
     if (out < 0) {
       if (strip_.start.point.face == strip_.last_face()) return Halves{};
-      // The base lies on a side, with the ends of the strip in both its faces.
+      // The base lies on a side; the ends of the strip are in its two faces.
       for (int s = 0; s < 3; ++s) {
         const Half side = 3 * strip_.last_face() + s, there = beyond(surface_, side);
         if (strip_.end.point.barycentric[(s + 2) % 3] == 0 && there >= 0 && there / 3 == strip_.start.point.face)
           return Halves{there};
       }
-      throw Error("a loop was lost at its base");
+      throw Error("a loop could not be closed at its base");
     }
     const Index vertex = surface_.record(out).tail;
     const GeodesicPath path = path_along(surface_, strip_, line_);
     const double scale = surface_.angle_scale(vertex), sum = surface_.angle_sum(vertex);
     const double leaving = path.start_direction / scale, arriving = path.end_direction / scale;
     const double between = std::abs(leaving - arriving);
-    // Counter-clockwise from where it leaves to where it arrives is the inner angle where that is the larger number.
+    // The inner angle runs counterclockwise from the departure to the arrival if the angle of the arrival is larger.
     const bool rising = arriving > leaving;
     const bool inside = between < pi - straight_margin;
     const bool outside = !surface_.on_boundary(vertex) && sum - between < pi - straight_margin;
     if (!inside && !outside) return std::nullopt;
     const bool over_inside = inside && (in == out || !outside || between <= sum - between);
-    // From the arrival back to the way out.
+    // From the arrival back to the departure.
     const bool clockwise = over_inside == rising;
     return turned(in, out, !clockwise);
   }
 
-  /// About the base from a corner to another. The direction is that of the vertex, not of the face of `from`.
+  /// Half-edges around the base from one corner to another. `left` is in the orientation of the vertex, not of the face of
+  /// `from`.
   Halves turned(Half from, Half to, bool left) const {
     Corner c = surface_.first_corner(surface_.record(from).tail);
     while (c.half != from) c = surface_.turn_left(c);
     const auto way = turn(surface_, from, to, left == c.forward);
-    if (!way) throw Error("a loop was lost at the boundary");
+    if (!way) throw Error("a loop could not be continued at the boundary");
     return *way;
   }
 
-  /// The half-edges at whose ends the line bends: which, and whether at the tail.
+  /// The half-edges at whose ends the line bends, and whether it bends at their tail.
   std::vector<std::pair<Half, bool>> bent_at() const {
     std::vector<std::pair<Half, bool>> result;
     for (std::size_t k = 1; k + 1 < line_.bends.size(); ++k) {
@@ -552,8 +553,8 @@ class Loop {
     }
   }
 
-  /// The loop through another vertex where it bends.
-  /// @return false where it does nowhere: a straight closed line, which is then the loop
+  /// Moves the base of the loop to a vertex where the loop bends.
+  /// @return false if it bends nowhere: then the loop is a straight closed line
   bool take_base(const Halves& walk, const std::vector<std::pair<Half, bool>>& bends) {
     for (const auto& [half, at_tail] : bends) {
       const auto found = std::find(walk.begin(), walk.end(), half);
@@ -565,7 +566,7 @@ class Loop {
     for (int turns = 4; turns <= most_turns; turns *= 2) {
       const Strip many = along(walk, turns, 0.5);
       const TautLine line = pull_taut(surface_, many);
-      // A bend that comes again a turn later is one of the shortest loop in this walk.
+      // A bend that occurs again one turn later is a bend of the shortest loop in this walk.
       for (std::size_t k = 1; k + 1 < line.bends.size(); ++k) {
         const Bend& bend = line.bends[k];
         const bool again = std::any_of(line.bends.begin() + static_cast<std::ptrdiff_t>(k), line.bends.end() - 1,
@@ -576,11 +577,11 @@ class Loop {
         return true;
       }
     }
-    throw Error("a loop that turns by very little at every turn was not followed to its end");
+    throw Error("a loop did not converge: it bends by very little in every turn");
   }
 
-  /// Where a turn of the walk is nothing but a shift, as around a cylinder, the loop may be a straight line: in the middle
-  /// of all those that stay in the strip.
+  /// Where one turn of the walk is only a translation, as around a cylinder, the loop may be a straight line. It is placed in
+  /// the middle of all lines that stay in the strip.
   bool take_straight(const Halves& walk) {
     const std::vector<Portal> portals = pull_taut(surface_, along(walk, 2, 0.5)).portals;
     const Portal &first = portals[0], &again = portals[walk.size()];
@@ -601,8 +602,8 @@ class Loop {
     return true;
   }
 
-  /// From a point of the first side crossed to itself.
-  /// @param from_left  its share of the side, seen from the face before: there its head is on the left
+  /// The strip of several turns of the walk, from a point of the first side crossed to the same point.
+  /// @param from_left  fraction of the side, from the left. Seen from the face before, the head of the side is on the left
   Strip along(const Halves& walk, int turns, double from_left) const {
     const Half side = beyond(surface_, walk.front());
     Strip strip;

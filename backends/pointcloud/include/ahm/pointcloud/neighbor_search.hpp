@@ -32,8 +32,8 @@ class NeighborSearch {
  public:
   virtual ~NeighborSearch() = default;
 
-  /// Finds the `indices.size()` points nearest to `query`, nearest first. Of points at equal distances, lower indices come first. A
-  /// query that is itself a point of the set finds itself.
+  /// Finds the `indices.size()` points nearest to `query`, nearest first. Of points at equal distances, lower indices come
+  /// first. A query that is itself a point of the set finds itself.
   /// @param squared_distances  same length as `indices`
   /// @return the number of points found: the smaller of `indices.size()` and the number of points
   virtual Index nearest(const Vec3& query, std::span<Index> indices, std::span<double> squared_distances) const = 0;

@@ -2,7 +2,7 @@
 /// The plane through a point and its neighbors.
 ///
 /// \code
-// neighbors: rows of points, without 7
+/// ahm::Vec3 normal = ahm::pointcloud::fit_plane(points, 7, neighbors).normal;    // neighbors: rows of points, without 7
 /// \endcode
 #pragma once
 

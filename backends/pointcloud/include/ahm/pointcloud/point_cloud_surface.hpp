@@ -39,8 +39,9 @@ struct CloudOptions {
   NormalSigns normal_signs = NormalSigns::automatic;
   /// Two points are joined only if their distance is at most this multiple of the distance to the k-th neighbor of each of them.
   double max_edge_ratio = 3.0;
-  /// Smoothing of the points by moving least squares, before the graph is built. Not set: where the noise exceeds one eighth of the
-  /// spacing, over the k neighbors. 0: off. Otherwise all points are smoothed, with neighborhoods of this radius, world units.
+  /// Smoothing of the points by moving least squares, before the graph is built. Not set: where the noise exceeds one eighth of
+  /// the spacing, over the k neighbors. 0: off. Otherwise all points are smoothed, with neighborhoods of this radius, world
+  /// units.
   std::optional<double> smooth;
   /// Measure noise, and decide about smoothing, separately for each part that shares no neighbors with the rest. The result for a
   /// part then does not depend on the rest of the file. false: one decision for all points, as for tiled clouds.
@@ -86,7 +87,8 @@ struct CloudDetails {
   Index turned = 0;            ///< input normals opposed to the majority in their component, and flipped
   bool oriented = false;       ///< input normals determine the upper side everywhere
   double agreement = 1;  ///< fraction of the local triangles found in the local triangulations of all three corners
-  /// Standard deviation of neighbors' offsets across the surface before smoothing, world units; for several parts, that of the largest.
+  /// Standard deviation of neighbors' offsets across the surface before smoothing, world units; for several parts, that of the
+  /// largest.
   double noise = 0;
   /// Distance between layers that are nearer than neighbors and contain nearly all points, world units; 0: no layers.
   double layer_gap = 0;
@@ -102,9 +104,9 @@ struct CloudDetails {
 /// `closest_point` returns a point in the tangent plane of the nearest row. At a row, u is by default the x axis of
 /// `graph().frame(vertex)`.
 ///
-/// Entries of the report: points, vertices, non_finite, duplicates, near_duplicates, smoothed, degenerate, k, components, triangles,
-/// flips, rejected_long, rejected_normals, rejected_steep, reflections, normals_given, contradicted, thick, lines, oriented, noise,
-/// layer_gap, mollification, seconds.normals, seconds.delaunay, seconds.laplacian, seconds.graph.
+/// Entries of the report: points, vertices, non_finite, duplicates, near_duplicates, smoothed, degenerate, k, components,
+/// triangles, flips, rejected_long, rejected_normals, rejected_steep, reflections, normals_given, contradicted, thick, lines,
+/// oriented, noise, layer_gap, mollification, seconds.normals, seconds.delaunay, seconds.laplacian, seconds.graph.
 ///
 /// Warnings, each with a count unless noted: normals_estimated; normals_contradicted; cover_not_delaunay (no number); degenerate
 /// (with rows); normals_turned; k_reduced (k requested, k used, distinct points); smoothed (points, noise); near_duplicates;
@@ -135,8 +137,8 @@ class PointCloudSurface final : public Surface {
   /// @throws InvalidGeometry (no triangle remains)
   FlatTriangles flat_approximation() const override;
 
-  /// Polar, or heat in two cases. The noise exceeds half of the mean edge length, so that too much of it remains after smoothing. Or
-  /// less than 0.8 of the local triangles agree, so that the points do not form a surface.
+  /// Polar, except in two cases. Heat if the noise exceeds half of the mean edge length, which smoothing does not reduce
+  /// enough. Heat also if less than 0.8 of the local triangles agree, because the points then do not form a surface.
   Method suggested_method() const override;
 
   ~PointCloudSurface() override;

@@ -1,5 +1,5 @@
 /// \file
-/// How much of each band of a march would be whose, without marching.
+/// Simulates how the bands of a march would be distributed over ranks, without solving them.
 ///
 /// \code
 /// const auto tiles = graph.manifest().first_vertices();
@@ -17,58 +17,64 @@
 
 namespace ahm::tiles {
 
-/// Which of several ranks owns which tile.
+/// How tiles are assigned to ranks.
 enum class Deal {
-  ranges,   ///< successive tiles, as many vertices for each as for others
-  cards,    ///< one after the other, as cards are dealt
-  arrival,  ///< in the order in which a front comes to them, one for each before anyone gets another, along the curve
+  ranges,   ///< consecutive tiles, with about the same number of vertices per rank
+  cards,    ///< tile t belongs to rank t modulo the number of ranks
+  arrival,  ///< tiles sorted by distance from the source, dealt in rounds of one tile per rank
 };
 
-/// Straight distances from the nearest of some points to each tile's middle, in whose order a front comes to tiles, more or less.
-/// @param middles  as `TiledGraph::middles`
+/// Straight-line distance from the middle of each tile to the nearest source, world units. A front reaches the tiles approximately in
+/// this order.
+/// @param middles  `TiledGraph::middles`
 std::vector<double> tile_distances(std::span<const Vec3> middles, std::span<const Vec3> sources);
 
-/// @param first_vertex  of each tile, and the number of vertices
-/// @param ranks         at least 1
-/// @param distances     of the tiles, for `arrival`
-/// @return of each tile its rank
-/// @throws InvalidArgument (as many distances as tiles are needed)
+/// Assigns tiles to ranks.
+/// @param first_vertex  first vertex of each tile, and last the number of vertices
+/// @param ranks         number of ranks, >= 1
+/// @param distances     distance of each tile from the source, for `arrival`
+/// @return the rank of each tile
+/// @throws InvalidArgument (number of distances)
 std::vector<int> deal_tiles(std::span<const Index> first_vertex, Deal deal, int ranks,
                             std::span<const double> distances = {});
 
-/// As if the vertices, whose order is that of the curve along which tiles are cut, were in so many tiles of equal size: where a
-/// small cloud stands for a large one. @throws InvalidArgument (no tiles, or more than vertices)
+/// First vertex of each of several tiles of equal size, and last the number of vertices: for simulating a large cloud with a small
+/// one. The vertices are ordered along the curve along which tiles are cut.
+/// @throws InvalidArgument (no tiles, or more tiles than vertices)
 std::vector<Index> equal_tiles(Index vertices, Index tiles);
 
+/// Options of the simulation.
 struct ScheduleOptions {
-  double step = 10;   ///< how far the front moves with each band, mean edge lengths along paths; > 0
-  double width = 24;  ///< how far ahead a band reaches; >= step
+  double step = 10;   ///< distance that the front moves per band along edge paths, mean edge lengths; > 0
+  double width = 24;  ///< depth of a band, mean edge lengths; >= step
 };
 
-/// Of a band's vertices ...
+/// Vertices of one band, by tile.
 struct BandTiles {
-  std::vector<std::pair<std::size_t, std::int64_t>> vertices;  ///< ... how many are in which tile
-  /// ... and how many of a tile have neighbours in which other one.
+  std::vector<std::pair<std::size_t, std::int64_t>> vertices;  ///< tile, and number of vertices in it
+  /// Pair of tiles, and number of vertices in the first that have neighbors in the second.
   std::vector<std::pair<std::pair<std::size_t, std::size_t>, std::int64_t>> borders;
 };
 
-/// The bands of a front that moves along shortest paths of the graph. Takes 4 bytes per vertex of the graph, and reads it once.
-/// @param first_vertex  of each tile, as `deal_tiles`
+/// The bands of a front that moves along shortest edge paths. Requires 4 bytes per vertex, and reads the graph once.
+/// @param first_vertex  first vertex of each tile, as in `deal_tiles`
 /// @throws InvalidArgument (options); IoError
 std::vector<BandTiles> march_schedule(const TiledGraph& graph, std::span<const Vertex> sources,
                                       std::span<const Index> first_vertex, const ScheduleOptions& options);
 
-/// What ranks would have to do where each waits for all with each band.
+/// Load of the ranks, if after each band every rank waits for all others.
 struct SharedLoad {
-  std::int64_t solved = 0;        ///< vertices of all bands
-  std::int64_t largest_band = 0;  ///< vertices
-  std::int64_t largest_part = 0;  ///< of a band, of one rank
-  double active = 0;              ///< mean number of ranks that have something of a band
+  std::int64_t solved = 0;        ///< vertices of all bands together
+  std::int64_t largest_band = 0;  ///< vertices of the largest band
+  std::int64_t largest_part = 0;  ///< largest number of vertices of one rank in one band
+  double active = 0;              ///< mean number of ranks with vertices in a band
   double messages =
-      0;  ///< mean number, over bands, of pairs of ranks of which one has neighbours of the other's: an exchange of halos sends as many
-  double halo = 0;     ///< mean over bands of the most vertices that a rank tells others, at most
-  double balance = 0;  ///< vertices solved over what the busiest rank of each band would allow; 1: no waiting
+      0;  ///< mean number per band of ordered pairs of ranks with neighboring vertices: messages of one halo exchange
+  double halo = 0;  ///< mean over bands of the largest number of vertices that a rank sends, upper bound
+  double balance =
+      0;  ///< vertices solved, divided by the number if all ranks were as busy as the busiest; 1: no waiting
 };
+/// Computes the load of the ranks. @param owner_of_tile  rank of each tile
 SharedLoad share_out(std::span<const BandTiles> bands, std::span<const int> owner_of_tile, int ranks);
 
 }  // namespace ahm::tiles

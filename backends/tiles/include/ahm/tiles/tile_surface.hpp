@@ -1,5 +1,5 @@
 /// \file
-/// Tiles of a surface that was built in memory: maps of it out of core and by ranks.
+/// Tiles of a surface that was built in memory, for maps out of core or by the ranks of an MPI run.
 ///
 /// \code
 /// const auto surface = ahm::trimesh::TriangleMeshSurface::build(points, triangles);
@@ -17,12 +17,12 @@
 
 namespace ahm::tiles {
 
-/// Writes the graph of a surface as tiles that are built, its vertices along a Morton curve of their positions, and the manifest
-/// last. Maps of the tiles are those of the surface to rounding, since nothing but the order of the vertices is another.
-/// @param input        what the surface was made of, for messages
-/// @param folder       made where it does not exist
-/// @param tile_points  vertices per tile, at least 100
-/// @throws InvalidArgument (tile_points; a surface without positions; a folder that holds tiles), IoError
+/// Writes the graph of a surface as built tiles. Orders the vertices along a Morton curve, and writes the manifest last. Maps of the
+/// tiles equal those of the surface up to rounding, because only the order of the vertices differs.
+/// @param input        name of the input, for messages
+/// @param folder       created if it does not exist
+/// @param tile_points  vertices per tile, >= 100
+/// @throws InvalidArgument (tile_points; a surface without positions; a folder with tiles), IoError
 Manifest tile_surface(const Surface& surface, const std::string& input, const std::filesystem::path& folder,
                       Index tile_points = TileOptions().tile_points, const Progress& progress = {});
 

@@ -1,5 +1,5 @@
 /// \file
-/// A graph on disk, tile by tile, of which as much is in memory as is asked for and fits.
+/// A graph on disk as tiles. Memory holds only tiles that were read, up to a limit.
 ///
 /// \code
 /// const ahm::tiles::TiledGraph graph("tiles", std::size_t{1} << 30);
@@ -20,12 +20,12 @@
 
 namespace ahm::tiles {
 
-/// The graph of a folder of tiles that are built. Tiles are mapped, and their checksums tested, when they are first asked for;
-/// of mapped tiles only what is read takes memory, and is given back, those first that were not asked for longest, when it becomes
-/// too much. Stars live as long as the graph. Unlike other graphs it serves one thread at a time.
+/// The graph of a folder of built tiles. Maps a tile into memory and checks its checksums when it is first used. Only the parts of a
+/// tile that are read take memory; above the limit the least recently used tiles are released. Stars are valid during the lifetime of
+/// the graph. Unlike other graphs, only one thread may use it at a time.
 class TiledGraph final : public TangentGraph {
  public:
-  /// @param memory  bytes that files mapped by this process may take, beside the tile at hand
+  /// @param memory  limit for mapped files of this process, bytes; the current tile may exceed it
   /// @throws IoError (missing or damaged), InvalidArgument (the tiles are not built)
   TiledGraph(const std::filesystem::path& folder, std::size_t memory);
 
@@ -33,43 +33,43 @@ class TiledGraph final : public TangentGraph {
   int dimension() const noexcept override { return 2; }
   TransportKind transport_kind() const noexcept override { return manifest_.kind; }
   double mean_edge_length() const noexcept override { return manifest_.mean_edge_length; }
-  /// @throws IoError, as all that asks for a tile: it is missing, or damaged
+  /// @throws IoError (a tile is missing or damaged), as all members that read a tile
   double component_edge_length(Index vertex) const override;
   double mass(Index vertex) const override;
   Star star(Index vertex) const override;
   Offset edge_count() const noexcept override { return edges_; }
   double length_unit() const noexcept override { return unit_; }
   bool is_delaunay() const noexcept override { return manifest_.is_delaunay; }
-  /// As the surface has them; of clouds x and y as `pointcloud::PointCloudSurface`.
+  /// The frame of the surface; for clouds the axes x and y of `pointcloud::PointCloudSurface`.
   std::optional<Frame> frame(Index vertex) const override;
 
-  /// Component of a vertex, numbered in the order of their first vertices.
+  /// Component of a vertex. Components are numbered in the order of their first vertices.
   Index component(Index vertex) const;
   /// Mean edge lengths of all components, graph units.
   std::span<const double> component_edge_lengths() const noexcept { return edge_lengths_; }
-  /// The first vertex of an input row; none where it was removed. Reads all tiles.
+  /// The first vertex of an input row; none if the row was removed. Reads all tiles.
   /// @throws InvalidArgument (no such row)
   std::optional<Vertex> vertex_of_row(Row row) const;
-  /// Of many, by one pass over the tiles.
+  /// The first vertices of several input rows. Reads all tiles once. @throws InvalidArgument (no such row)
   std::vector<std::optional<Vertex>> vertices_of_rows(std::span<const Row> rows) const;
-  /// The vertex at a row that is nearest to a position in world units. Reads all tiles.
+  /// The vertex nearest to a position, world units, among those with a row. Reads all tiles.
   Vertex nearest_vertex(const Vec3& position) const;
 
   const Manifest& manifest() const noexcept { return manifest_; }
   std::size_t tiles() const noexcept { return manifest_.tiles.size(); }
   std::size_t tile_of(Index vertex) const;
   Index first_vertex(std::size_t tile) const { return first_[tile]; }
-  /// Mean position of each tile's vertices, world units. @throws IoError (tiles built before these were kept)
+  /// Mean position of the vertices of each tile, world units. @throws IoError (tiles of an older version without them)
   std::vector<Vec3> middles() const;
-  /// Input rows at the vertices of a tile: those of its vertex i are rows[begin[i]] to rows[begin[i + 1]].
+  /// The input rows of a tile. Those of its vertex i are rows[begin[i]] to rows[begin[i + 1] - 1].
   struct TileRows {
     std::span<const Index> begin, rows, removed, component;
-    std::span<const Vec3> positions;  ///< of vertices, world units
+    std::span<const Vec3> positions;  ///< positions of the vertices, world units
   };
   TileRows rows(std::size_t tile) const;
-  /// Rows with several vertices, where a mesh was cut; ascending.
+  /// Rows with several vertices, where a mesh was cut, ascending.
   std::vector<Index> shared_rows() const;
-  /// Times that memory of tiles was given back.
+  /// Number of times that the memory of a tile was released.
   std::int64_t releases() const noexcept { return releases_; }
 
  private:

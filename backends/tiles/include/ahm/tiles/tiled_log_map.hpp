@@ -1,5 +1,5 @@
 /// \file
-/// The log map of a tiled graph, on disk as the graph is.
+/// The log map of a tiled graph, with tiles on disk.
 ///
 /// \code
 /// ahm::tiles::write_log_map(graph, ahm::Source::at_vertex(ahm::Vertex{0}), "map", {});
@@ -16,35 +16,36 @@
 
 namespace ahm::tiles {
 
+/// Options of a map over tiles.
 struct TiledMapOptions {
   HeatOptions heat;
-  double radius = std::numeric_limits<double>::infinity();
-  bool coordinates = true;  ///< false: distances alone, those of the localized map (`stream_distances`)
-  std::size_t memory = std::size_t{256} << 20;  ///< bytes of the map that are in memory at a time
-  Index checkpoint = 16;                        ///< bands after which a run that is killed may go on; 0: never
+  double radius = std::numeric_limits<double>::infinity();  ///< as `MapOptions::radius`, world units
+  bool coordinates = true;                      ///< false: only the distances of the localized map (`stream_distances`)
+  std::size_t memory = std::size_t{256} << 20;  ///< limit for tiles of the map in memory, bytes
+  Index checkpoint = 16;  ///< bands between checkpoints, from which a killed run can resume; 0: none
 };
 
+/// Figures of a finished map.
 struct TiledMapSummary {
   MarchStatistics march;
-  Index begun_at = 0;         ///< bands that a run before this one, which did not end, has made
+  Index begun_at = 0;         ///< bands that an earlier, unfinished run had solved
   std::int64_t ok = 0;        ///< vertices with coordinates
   double farthest = 0;        ///< largest distance
-  std::int64_t releases = 0;  ///< times that memory of a tile of the graph was given back
-  std::int64_t spills = 0;    ///< times a part of the map left memory before it was whole
+  std::int64_t releases = 0;  ///< number of times that memory of a tile of the graph was released
+  std::int64_t spills = 0;    ///< number of times that an incomplete tile of the map was moved to disk
 };
 
-/// One map by march: tiles of the graph are loaded as the front reaches them, tiles of the map written when it has passed. The
-/// bits are those of a marching `LogMapSolver` on the same graph in memory. The folder gets a file per tile, NUMBER.map: arrays
-/// `coordinates` (2 per vertex), `distance`, `spread`, `status` (ahm::Status), of distances alone `distance` and `status`; and,
-/// last of all, map.json. Where a run was killed, the next one with the same arguments goes on from its last checkpoint, and ends with
-/// the same bytes.
-/// @throws as `stream_log_map`; InvalidArgument (a folder with an unfinished map of something else), IoError
+/// Makes one map by a march. Loads tiles of the graph when the front reaches them, and writes tiles of the map when it has passed. The
+/// result has the same bits as a marching `LogMapSolver` on the same graph in memory. Writes one file per tile, NUMBER.map, with the
+/// arrays `coordinates` (2 per vertex), `distance`, `spread`, `status` (`ahm::Status`), or without coordinates `distance` and `status`.
+/// Writes map.json last. After a killed run, a run with the same arguments resumes from the last checkpoint and writes the same bytes.
+/// @throws as `stream_log_map`; InvalidArgument (a folder with an unfinished map of other inputs), IoError
 TiledMapSummary write_log_map(const TiledGraph& graph, const Source& source, const std::filesystem::path& folder,
                               const TiledMapOptions& options);
 
-/// The rows of the input as CSV: row, u, v, distance, spread, status, or row, distance, status; tile by tile, in the order of the graph,
-/// without points that are not finite. As by `Surface::to_rows`, distances from one source are no less than the straight line in
-/// space, below which those of the tiles may be, and rows end at the radius of the map. @throws IoError
+/// Writes the rows of the input as CSV: row, u, v, distance, spread, status; without coordinates row, distance, status. Writes tile by
+/// tile in the order of the graph, without points that are not finite. As in `Surface::to_rows`, distances from a single source are at
+/// least the straight-line distance in space, and rows beyond the radius get `beyond_radius`. @throws IoError
 void write_rows(const TiledGraph& graph, const std::filesystem::path& folder, const std::filesystem::path& csv);
 
 }  // namespace ahm::tiles

@@ -1,5 +1,5 @@
 /// \file
-/// What makes the log maps of an application: diffusion, a front in polar coordinates, or exact geodesics.
+/// The solver that computes the log maps of an application: heat method, polar maps or exact geodesics.
 ///
 /// \code
 /// ahm::Atlas by_heat = ahm::make_atlas(solver, sources, faces);             // ahm::LogMapSolver
@@ -19,13 +19,13 @@
 
 namespace ahm {
 
-/// One of the three, which has to outlive it.
+/// A reference to one of the three solvers, which must outlive it.
 class AnySolver {
  public:
   AnySolver(const LogMapSolver& solver) : solver_(&solver) {}
-  /// @param threads  of what makes several maps; 0: one per core
+  /// @param threads  number of threads for several maps; 0: one per core
   AnySolver(const PolarMapSolver& solver, unsigned threads = 0) : polar_(&solver), threads_(threads) {}
-  /// @param options  tolerance and threads; of every map its own radius, and frames
+  /// @param options  only `tolerance` and `threads` are used; radius and frames are set for each map
   AnySolver(const ExactGeodesics& geodesics, const ExactMapOptions& options = {})
       : geodesics_(&geodesics), tolerance_(options.tolerance), threads_(options.threads) {}
 
@@ -36,21 +36,25 @@ class AnySolver {
     return solver_ != nullptr ? solver_->graph() : polar_ != nullptr ? polar_->graph() : geodesics_->surface().graph();
   }
 
-  /// The map from a vertex in the axes of its frame. @throws as `LogMapSolver::solve`, `log_map` of the others
+  /// The log map from a vertex, in the axes of its frame. @throws as `LogMapSolver::solve`, or `log_map` of the other
+  /// solvers
   LogMap map(Vertex source, double radius, bool frames = false) const;
-  /// The coordinates of the vertices of regions[s] in the map from sources[s], two numbers each, region by region; NaN where it has
-  /// none. By heat as `local_coordinates`, for which the solver need not have factored anything.
-  /// @param reach  of every source, no nearer than the farthest of its vertices is; maps by other methods end there. World units
+  /// Coordinates of the vertices of regions[s] in the map from sources[s]: two numbers per vertex, region by region; NaN
+  /// where the map has none. The heat method uses `local_coordinates`, which does not need the factorizations of the
+  /// solver.
+  /// @param reach  radius of each polar or exact map, world units; at least the distance of the farthest vertex of its
+  /// region. The heat method ignores it
   /// @throws as `map`, `local_coordinates`
   std::vector<double> coordinates(std::span<const Vertex> sources, std::span<const std::span<const Vertex>> regions,
                                   std::span<const double> reach) const;
-  /// No corners of a face are farther apart along its sides; of heat and polar maps, which need no bound, infinite. World units.
+  /// Upper bound of the distance between two corners of a face along its sides, world units. Infinite for heat and polar
+  /// maps, which need no bound.
   double longest_corner_distance(const FaceList& faces) const;
-  /// @throws as `voronoi_cells`
+  /// Geodesic Voronoi cells of the sources. @throws as `voronoi_cells`
   VoronoiCells cells(std::span<const Vertex> sources) const;
 
  private:
-  /// Those of whole maps, a block of sources at a time.
+  /// Coordinates as in `coordinates`, from maps of the whole surface, a block of sources at a time.
   std::vector<double> coordinates_of_whole(std::span<const Vertex> sources,
                                            std::span<const std::span<const Vertex>> regions,
                                            std::span<const double> reach) const;

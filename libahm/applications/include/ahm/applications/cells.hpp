@@ -18,42 +18,43 @@
 namespace ahm {
 
 struct VoronoiCells {
-  /// Per vertex the position in `vertices` of the nearest source; -1 in components without one.
+  /// Nearest source of each vertex, as an index into `vertices`; -1 in components without a source.
   std::vector<Index> labels;
-  /// Per vertex the distance from that source, world units, no shorter than the straight line in space where the graph has frames; NaN
-  /// in components without a source.
+  /// Distance of each vertex from its nearest source, world units; NaN in components without a source. Where the graph has
+  /// frames, no distance is shorter than the straight line in space.
   std::vector<double> distances;
 };
 
-/// Cells by geodesic distance (`Wavefront`), all in one pass whatever the number of sources. Exact to ties on flat
-/// Delaunay triangulations of convex outline: around a corner of the boundary that points inwards ways come out a little too long.
-/// @throws InvalidArgument (empty, index, a vertex given twice), ResourceExhausted
+/// Geodesic Voronoi cells by a wavefront (`Wavefront`), in one pass for any number of sources. Up to ties, cells are exact
+/// on flat Delaunay triangulations of convex outline. Around a reentrant corner of the boundary distances are slightly too
+/// long.
+/// @throws InvalidArgument (no vertices, index, a vertex that occurs twice), ResourceExhausted
 VoronoiCells voronoi_cells(const TangentGraph& graph, std::span<const Vertex> vertices);
-/// The same by a front that has come from the first of these vertices before, if from any: it goes on from the others, over what is
-/// nearer to them.
-/// @throws as above; InvalidArgument (more points than vertices)
+/// Voronoi cells by a front whose points are the first of `vertices`, or that has none. The other vertices are added; only
+/// what is nearer to them is updated.
+/// @throws as the overload for graphs; InvalidArgument (a front with more points than `vertices`)
 VoronoiCells voronoi_cells(Wavefront& front, std::span<const Vertex> vertices);
-/// The same by exact distances over the flat faces.
+/// Voronoi cells by exact distances over the flat faces.
 /// @param options  radius, beyond which there are no cells; tolerance; progress
-/// @throws as above, as `ExactGeodesics::log_map`
+/// @throws as the overload for graphs, as `ExactGeodesics::log_map`
 VoronoiCells voronoi_cells(const ExactGeodesics& geodesics, std::span<const Vertex> vertices,
                            const ExactMapOptions& options = {});
 
-/// `count` vertices, each the farthest from those before it, beginning with `first`; vertices of components without one
-/// count as infinitely far. Each one costs what is nearer to it than to those before.
-/// @param progress  stage "farthest points"; asked before every point
-/// @param among     vertices to choose from, as those of rows (`vertices_with_rows`); empty: all
-/// @throws InvalidArgument (index, count not in [1, n], n of those to choose from), ResourceExhausted, Cancelled
+/// `count` vertices, beginning with `first`; each is the farthest from the previous ones. Vertices of components without a
+/// point are infinitely far. Each new point updates only the vertices that are nearer to it than to the previous ones.
+/// @param progress  stage "farthest points"; checked before every point
+/// @param among     candidates, for example the vertices that have rows (`vertices_with_rows`); empty: all vertices
+/// @throws InvalidArgument (index; count less than 1 or more than the candidates), ResourceExhausted, Cancelled
 std::vector<Vertex> farthest_points(const TangentGraph& graph, Vertex first, Index count, const Progress& progress = {},
                                     std::span<const Vertex> among = {});
-/// The same by a front that has not come from anywhere; it has come from all of them but the last then, so that `voronoi_cells` goes on
-/// from there.
-/// @throws as above; InvalidArgument (a front with points)
+/// Farthest points by a front without points. Afterwards the front has all of them but the last, so that `voronoi_cells`
+/// can continue it.
+/// @throws as the overload for graphs; InvalidArgument (a front with points)
 std::vector<Vertex> farthest_points(Wavefront& front, Vertex first, Index count, const Progress& progress = {},
                                     std::span<const Vertex> among = {});
-/// The same by exact distances over the flat faces; of equally far vertices the first.
-/// @param options  tolerance; progress, as above. Points spread over everything, whatever the radius
-/// @throws as above, as `ExactGeodesics::log_map`
+/// Farthest points by exact distances over the flat faces; of equally far vertices the first is taken.
+/// @param options  tolerance; progress, as in the overload for graphs. The radius is ignored
+/// @throws as the overload for graphs, as `ExactGeodesics::log_map`
 std::vector<Vertex> farthest_points(const ExactGeodesics& geodesics, Vertex first, Index count,
                                     const ExactMapOptions& options = {}, std::span<const Vertex> among = {});
 

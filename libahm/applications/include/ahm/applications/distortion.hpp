@@ -1,5 +1,5 @@
 /// \file
-/// How far a map of triangles to the plane is from an isometry (Eq. 18).
+/// Metric distortion: how much a map of triangles to the plane differs from an isometry (Eq. 18).
 ///
 /// \code
 /// std::vector<ahm::TriangleDistortion> d = ahm::distortion(positions, triangles, map.coordinates());
@@ -16,53 +16,55 @@
 
 namespace ahm {
 
-/// What a map does to one triangle.
+/// Distortion of one triangle under a map.
 struct TriangleDistortion {
-  /// Singular values of the gradient, sigma1 <= sigma2: the factors by which lengths change in the least and in the
-  /// most stretched direction. NaN where a corner has no coordinates or no position, or the triangle no area.
+  /// Singular values of the gradient, sigma1 <= sigma2: the factors by which lengths change in the least and the most
+  /// stretched direction. NaN where a corner has no coordinates or no position, or where the triangle has no area.
   double sigma1 = std::numeric_limits<double>::quiet_NaN();
   double sigma2 = std::numeric_limits<double>::quiet_NaN();
-  double side = 0;       ///< square root of its area in space, world units: the area itself may not fit a double
+  double side = 0;       ///< square root of the area in space, world units; the area itself may overflow
   bool flipped = false;  ///< clockwise in the plane
 
-  /// D = max(1/sigma1, sigma2): 1 for an isometry, infinite where the triangle collapses, NaN as above (Eq. 18).
+  /// D = max(1/sigma1, sigma2) (Eq. 18): 1 for an isometry, infinite where the triangle collapses, NaN where sigma1 and
+  /// sigma2 are.
   double value() const noexcept;
 };
 
-/// Areas as shares of the largest.
+/// Areas of the triangles relative to the largest one.
 std::vector<double> relative_areas(std::span<const TriangleDistortion> triangles);
 
-/// Of a map given per vertex.
-/// @param positions    n, world units
-/// @param triangles    of these vertices, counter-clockwise as seen from the side that the map sees
+/// Distortion of a map with coordinates per vertex.
+/// @param positions    n positions, world units
+/// @param triangles    corners of each triangle, counter-clockwise as seen from the side of the source's normal
 /// @param coordinates  n x 2, row major, world units; NaN where unknown, as in `LogMap::coordinates`
-/// @return one per triangle
+/// @return one entry per triangle
 /// @throws InvalidArgument (lengths, indices)
 std::vector<TriangleDistortion> distortion(std::span<const Vec3> positions,
                                            std::span<const std::array<Index, 3>> triangles,
                                            std::span<const double> coordinates);
 
-/// Of a map given per corner, as of an atlas.
+/// Distortion of a map with coordinates per corner, such as an atlas.
 /// @param corner_coordinates  triangles x 3 x 2, row major
 /// @throws InvalidArgument (lengths, indices)
 std::vector<TriangleDistortion> corner_distortion(std::span<const Vec3> positions,
                                                   std::span<const std::array<Index, 3>> triangles,
                                                   std::span<const double> corner_coordinates);
 
-/// Figures over the triangles that have a distortion; weighted by area, so that they do not depend on how a surface is
-/// cut into triangles. NaN where there is no such triangle.
+/// Statistics of the triangles that have a distortion. They are weighted by area, so they do not depend on the
+/// triangulation. NaN where there is no such triangle.
 struct DistortionSummary {
-  /// Of the triangles that do not collapse: one of those would hide all others.
+  /// Mean over the triangles that do not collapse; a single collapsed one would dominate it.
   double mean = std::numeric_limits<double>::quiet_NaN();
   double median = std::numeric_limits<double>::quiet_NaN();
-  double percentile_95 = std::numeric_limits<double>::quiet_NaN();  ///< 95 % of the area have no more
+  double percentile_95 = std::numeric_limits<double>::quiet_NaN();  ///< 95 % of the area has at most this distortion
   double largest = std::numeric_limits<double>::quiet_NaN();
-  /// Share of the area that collapses, D > 1e6: exact maps do so behind corners, all that lies in the shade of a vertex.
+  /// Share of the area that collapses, D > 1e6. Exact maps collapse the area behind a vertex that its shortest paths pass
+  /// through.
   double collapsed_area = std::numeric_limits<double>::quiet_NaN();
   double flipped = std::numeric_limits<double>::quiet_NaN();       ///< share of the number of triangles
   double flipped_area = std::numeric_limits<double>::quiet_NaN();  ///< share of the area
-  Offset measured = 0;                                             ///< triangles that have a distortion
-  Offset unmeasured = 0;                                           ///< triangles without coordinates or area
+  Offset measured = 0;                                             ///< number of triangles that have a distortion
+  Offset unmeasured = 0;                                           ///< number of triangles without coordinates or area
 };
 
 DistortionSummary summary(std::span<const TriangleDistortion> triangles);

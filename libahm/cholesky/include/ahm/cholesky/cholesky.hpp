@@ -28,7 +28,7 @@ struct SparseUpper {
   bool is_complex = false;
   std::vector<Offset> column_begin;  ///< columns + 1
   std::vector<Offset> rows;
-  std::vector<double> values;  ///< 1 or 2 per entry
+  std::vector<double> values;  ///< 1 number per real entry, 2 per complex entry
 
   Offset size() const { return static_cast<Offset>(column_begin.size()) - 1; }
 };
@@ -54,11 +54,11 @@ class SymbolicCholesky {
   /// The analysis of a pattern in which every entry of `scalar` is a block of `width` x `width`. Uses the ordering of `scalar`.
   SymbolicCholesky(const SparseUpper& blocks, const SymbolicCholesky& scalar, int width);
 
-  /// Entries of the factor.
+  /// Number of entries of the factor.
   Offset nonzeros() const noexcept;
   /// Whether several threads work on one factorization.
   bool is_shared() const noexcept;
-  /// Floating-point operations of a factorization of real numbers.
+  /// Floating-point operations of the factorization of a real matrix.
   double operations() const noexcept;
 
  private:
@@ -73,20 +73,20 @@ class SymbolicCholesky {
 class CholeskyFactor {
  public:
   /// Factorizes, and checks that every pivot is finite and positive.
-  /// @param name     of the matrix, for messages
-  /// @param threads  that share the work; the result has the same bits for any number
+  /// @param name     name of the matrix, for messages
+  /// @param threads  number of threads; the result has the same bits for any number
   /// @throws NotPositiveDefinite, ResourceExhausted
   CholeskyFactor(const SparseUpper& matrix, const SymbolicCholesky& symbolic, const char* name, unsigned threads = 1);
 
   /// X <- K^-1 X, column major; complex vectors as interleaved pairs.
-  /// @param threads  that share a large factor for up to four columns; the result has the same bits for any number
+  /// @param threads  number of threads, used for large factors and up to four columns; the result has the same bits for any number
   void solve(std::span<double> X, Offset columns, unsigned threads = 1) const;
   /// Solves for one column and checks that the residual is small.
   /// @param matrix  K
   /// @throws NotPositiveDefinite
   std::vector<double> checked_solve(const SparseUpper& matrix, std::vector<double> b, const char* name,
                                     unsigned threads = 1) const;
-  /// The check of `checked_solve` with pseudorandom numbers in [-1, 1).
+  /// Runs `checked_solve` with a pseudorandom right-hand side in [-1, 1).
   void check(const SparseUpper& matrix, const char* name, unsigned threads = 1) const;
 
   Offset nonzeros() const noexcept;
@@ -101,7 +101,7 @@ class CholeskyFactor {
   std::unique_ptr<const double[]> values_;
 };
 
-/// The BLAS and CHOLMOD that the process uses: for reports.
+/// The BLAS and CHOLMOD in use, for reports.
 struct LinearAlgebraInfo {
   std::string cholmod;  ///< version
   std::string blas;     ///< e.g. "OpenBLAS 0.3.21 ..." or the file name of the library

@@ -1,5 +1,5 @@
 /// \file
-/// The unit sphere's log map in closed form, and how far a computed one is from it.
+/// The unit sphere's log map in closed form, and the error of a computed one.
 ///
 /// \code
 /// const Vec2 exact = sphere_log(p, frame.x, frame.y, q);
@@ -15,23 +15,23 @@
 
 namespace ahm::test {
 
-/// Log map at p with tangent axes x, y; zero at p and where no direction is the shortest, at -p.
+/// Log map at p with tangent axes x, y. Zero at p, and at -p, where the shortest direction is not unique.
 /// @param p, q  unit vectors
-/// @param x, y  of equal length, at right angles to p and to each other
+/// @param x, y  of equal length, perpendicular to p and to each other
 Vec2 sphere_log(const Vec3& p, const Vec3& x, const Vec3& y, const Vec3& q);
 
 /// Length of the shorter arc between two unit vectors.
 double sphere_distance(const Vec3& p, const Vec3& q);
 
 struct SphereError {
-  double rms = 0;         ///< of the vector error, over distances up to the reach
+  double rms = 0;         ///< root mean square of the vector error, over distances up to `reach`
   double hemisphere = 0;  ///< largest vector error over distances < pi / 2
-  double angle = 0;       ///< root mean square over distances up to the reach, radians
-  int missing = 0;        ///< points within the reach that have no coordinates
+  double angle = 0;       ///< root mean square of the angular error over distances up to `reach`, radians
+  int missing = 0;        ///< number of points within `reach` without coordinates
 };
 
-/// Errors of (u, v) at every point of the unit sphere, seen from point `source` with the axes x, y; the source itself
-/// does not count.
+/// Errors of (u, v) at the points of the unit sphere, for a map from point `source` with the axes x, y. The source itself
+/// is left out.
 SphereError sphere_error(std::span<const Vec3> points, std::span<const double> u, std::span<const double> v,
                          Index source, const Vec3& x, const Vec3& y, double reach = 0.9 * std::numbers::pi);
 

@@ -1,5 +1,5 @@
 /// \file
-/// Flat graphs with random weights, masses and frames, on which the log map is known exactly.
+/// Flat graphs with random weights, masses and frames, for which the log map has a closed form.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace ahm::test {
 
-/// A flat graph: positions in R^d, and per vertex an orthogonal matrix that takes positions to components in its frame.
+/// A flat graph: positions in R^d, and for each vertex an orthogonal matrix from positions to components in its frame.
 struct FlatGraph {
   int dimension = 2;
   std::vector<double> positions;  ///< n x d
@@ -19,9 +19,9 @@ struct FlatGraph {
   Index size() const { return static_cast<Index>(data.masses.size()); }
   /// Position of vertex i relative to vertex p, in the frame of p.
   std::vector<double> exact(Index p, Index i) const;
-  /// Components in the frame of vertex i of a vector given in the frame of vertex p.
+  /// Parallel transport: a vector in the frame of vertex p, expressed in the frame of vertex i.
   std::vector<double> carried(Index p, Index i, const std::vector<double>& vector) const;
-  /// Diagonal of the least box around the positions.
+  /// Diagonal of the bounding box of the positions.
   double diameter() const { return diagonal; }
 };
 
@@ -30,25 +30,25 @@ struct Pair {
   Index a, b;
 };
 
-/// Random weights in [0.1, 10], masses in [0.1, 2] x cell, frames rotated at random; `reflections` mirrors half of
-/// them, which needs `kind` block.
+/// A flat graph with random weights in [0.1, 10], random masses in [0.1, 2] times the mean edge length to the power d, and
+/// frames rotated at random. `reflections` mirrors every other frame, which requires the `kind` block.
 FlatGraph flat_graph(int dimension, std::vector<double> positions, const std::vector<Pair>& edges, TransportKind kind,
                      bool reflections, unsigned seed);
 
-/// Jittered grid of `side` x `side` points in the unit square, triangulated with random diagonals.
+/// A jittered grid of `side` x `side` points in the unit square, triangulated with random diagonals.
 FlatGraph planar_triangulation(Index side, TransportKind kind = TransportKind::rotation2, bool reflections = false,
                                unsigned seed = 1);
 
-/// Points on a line, one apart, d = 1.
+/// Points on a line at distance 1, d = 1.
 FlatGraph line_graph(Index n);
 
-/// Jittered lattice of `side`^3 points in the unit cube, d = 3.
+/// A jittered lattice of `side`^3 points in the unit cube, d = 3.
 FlatGraph lattice3(Index side);
 
-/// A straight strip of `length` x 3 points, one apart: many edges from end to end.
+/// A straight strip of `length` x 3 points at distance 1. Paths from end to end have many edges.
 FlatGraph strip(Index length);
 
-/// A tube of `rings` rings of `around` vertices, one apart along and around it; the frames' x axes run along it.
+/// A tube of `rings` rings of `around` vertices, at distance 1 along and around it. The x axes of the frames run along it.
 CsrGraphData tube(Index rings, Index around);
 
 }  // namespace ahm::test

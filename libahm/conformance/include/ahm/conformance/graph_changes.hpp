@@ -1,5 +1,5 @@
 /// \file
-/// Graphs made from other graphs, whose maps follow from those of the first.
+/// Graphs derived from other graphs, whose maps follow from those of the original.
 #pragma once
 
 #include <vector>
@@ -11,30 +11,30 @@ namespace ahm::test {
 /// A copy of any graph in flat arrays.
 CsrGraphData stored(const TangentGraph& graph);
 
-/// Two graphs of one kind side by side, not connected.
+/// Two graphs of the same kind as one graph of two components.
 CsrGraphData joined(const CsrGraphData& graph, const CsrGraphData& other);
 
-/// Two copies of a graph side by side, not connected.
+/// Two copies of a graph as one graph of two components.
 CsrGraphData doubled(const CsrGraphData& graph);
 
-/// The same graph with every frame turned at random: components in frame i become Q_i times them. On `block` graphs
-/// every other frame is mirrored as well.
+/// A graph with every frame turned at random: components in frame i are multiplied by Q_i. On `block` graphs every other
+/// frame is mirrored as well.
 struct Turned {
   CsrGraphData data;
   std::vector<double> turns;  ///< Q_i, n x d x d, row major
 };
 Turned with_frames_turned(const CsrGraphData& graph, unsigned seed = 1);
 
-/// The same graph with every 2 x 2 rotation written out as a block.
+/// A graph with every 2 x 2 rotation stored as a block.
 CsrGraphData as_blocks(const CsrGraphData& rotations);
 
-/// The same graph with its vertices renumbered: vertex i becomes order[i].
+/// A graph with its vertices renumbered: vertex i becomes order[i].
 CsrGraphData relabelled(const CsrGraphData& graph, const std::vector<Index>& order);
 
-/// The same graph seen from the other side: every frame mirrored in its x axis.
+/// A graph seen from the other side: every frame is mirrored in its x axis.
 CsrGraphData mirrored(const CsrGraphData& graph);
 
-/// The same graph with lengths multiplied by `factor` (masses by its power d, weights by its power d - 2).
+/// A graph with lengths multiplied by `factor`, masses by factor^d and weights by factor^(d - 2).
 CsrGraphData scaled(const CsrGraphData& graph, double factor);
 
 }  // namespace ahm::test

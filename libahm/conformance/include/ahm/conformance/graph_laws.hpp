@@ -1,12 +1,12 @@
 /// \file
-/// The laws of the graph contract, without the suite that asks for them all (ahm/conformance/graph_contract.hpp).
+/// The laws of the graph contract as functions, without the test suite of all of them (ahm/conformance/graph_contract.hpp).
 #pragma once
 
 #include "ahm/graph/tangent_graph.hpp"
 
 namespace ahm::test {
 
-/// The laws one by one; a broken one is a failure of the running test. `flat` ones ask for a flat graph.
+/// One function per law. A violation fails the running test. Functions with `flat` in their name require a flat graph.
 namespace contract {
 
 void keeps_every_law_of_a_tangent_graph(const TangentGraph& graph);

@@ -9,17 +9,17 @@
 
 namespace ahm::test {
 
-/// A jittered strip of paper 1 long and 0.2 wide, its ends glued with a twist: flat, one-sided, and known by its edge
-/// lengths.
+/// A jittered paper strip of length 1 and width 0.2, with its ends glued after a twist: flat and one-sided, described by
+/// edge lengths.
 struct PaperBand {
-  Index around = 0, across = 0;  ///< quads
+  Index around = 0, across = 0;  ///< numbers of quads
   std::vector<Triangle> faces;
   std::vector<std::array<double, 3>> lengths;
-  /// Positions of corner s of face f in the strip, without wrapping round: 3 per face.
+  /// Positions of the corners in the strip, 3 per face. A face at the glued ends is not wrapped around.
   std::vector<Vec2> corners;
-  std::vector<Vec2> plane;  ///< per vertex
+  std::vector<Vec2> plane;  ///< position of each vertex in the strip
 
-  /// Distance in the strip, through the glued ends where that is shorter.
+  /// Distance in the strip, or across the glued ends where that is shorter.
   double distance(const Vec2& p, const Vec2& q) const;
 };
 PaperBand paper_band(Index around, Index across, unsigned seed = 1);

@@ -1,6 +1,6 @@
 /// \file
-/// The paper's (d + 1) n x (d + 1) n affine connection Laplacian, assembled and solved as written (Alg. 1, Alg. 2). The
-/// library itself never assembles it; this is what its elimination is checked against.
+/// The paper's (d + 1) n x (d + 1) n affine connection Laplacian, assembled and solved as in Alg. 1 and Alg. 2. Tests
+/// compare the library, which eliminates the homogeneous coordinate, with it.
 #pragma once
 
 #include <vector>
@@ -10,7 +10,7 @@
 
 namespace ahm::test {
 
-/// phi, n x d, for a vertex source whose axes are those of its frame.
+/// The log map phi, n x d, from a vertex in the axes of its frame.
 std::vector<double> reference_log_map(const TangentGraph& graph, Index source, Variant variant, double t_coef = 1.0);
 
 }  // namespace ahm::test

@@ -1,5 +1,5 @@
 /// \file
-/// Vectors of space, for the shapes and for tests of them.
+/// Vectors in space, for shapes and their tests.
 #pragma once
 
 #include <cmath>
@@ -15,12 +15,12 @@ inline Vec3 cross(const Vec3& a, const Vec3& b) {
 }
 inline Vec3 times(double s, const Vec3& a) { return {s * a[0], s * a[1], s * a[2]}; }
 inline double norm(const Vec3& a) { return std::sqrt(dot(a, a)); }
-/// A vector's direction, of length 1.
+/// The unit vector along a vector.
 inline Vec3 unit(const Vec3& v) {
   const double length = std::hypot(v[0], v[1], v[2]);
   return {v[0] / length, v[1] / length, v[2] / length};
 }
-/// What is left of a vector without its part along `normal`, which has length 1.
+/// The component of a vector perpendicular to `normal`, which has length 1.
 inline Vec3 tangential(const Vec3& v, const Vec3& normal) { return minus(v, times(dot(v, normal), normal)); }
 
 }  // namespace ahm::test

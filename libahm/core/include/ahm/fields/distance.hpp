@@ -11,9 +11,9 @@
 
 namespace ahm {
 
-/// Width d, in the frame of each vertex: U_i phi_i / |phi_i|, the unit vector away from the map's source; 0 at the source itself
-/// and where opposite ways to it cancel.
-/// @param map  with frames, of this graph
+/// The gradient of the distance: U_i phi_i / |phi_i|, the unit vector away from the map's source. Width d, in the frame of each
+/// vertex. 0 at the source, and where opposite geodesic paths to it cancel.
+/// @param map  map of this graph, with frames
 /// @throws InvalidArgument
 VertexField distance_gradient(const TangentGraph& graph, const LogMap& map);
 
@@ -22,10 +22,10 @@ struct DistanceField {
   VertexField gradient;  ///< `distance_gradient`
 };
 
-/// The distance from a source, and the direction U_i phi_i / |phi_i| of half the gradient of its square (Lemma 1): nothing
-/// is differentiated. Within a few edges of the cut locus heat from both sides mixes, and directions are blended.
-/// @param source   in one place; or any set of samples with offset 0: the distance to the nearest of them
-/// @param options  of the map that this solves for; the variant is localized unless given, the only one for sets
+/// The distance from a source and its gradient. The gradient is the direction U_i phi_i / |phi_i| of half the gradient of the squared
+/// distance (Lemma 1), so nothing is differentiated. Within a few edges of the cut locus, directions from both sides are blended.
+/// @param source   a source at one point, or a set of samples with offset 0; then the distance is that from the nearest sample
+/// @param options  options of the map. The default variant is localized, the only one for sets of samples
 /// @throws as `LogMapSolver::solve`
 DistanceField distance_and_gradient(const LogMapSolver& solver, const Source& source, const MapOptions& options = {});
 

@@ -1,5 +1,5 @@
 /// \file
-/// Connected components of a tangent graph, and the mean length of edges.
+/// Connected components and mean edge lengths of a tangent graph.
 ///
 /// \code
 /// std::cout << ahm::connected_components(graph).count << " components\n";
@@ -13,8 +13,8 @@
 
 namespace ahm {
 
-/// Component of each vertex, numbered from 0 in the order of their first vertices. Edges of weight 0 carry no heat and
-/// do not connect.
+/// Component of each vertex, numbered from 0 in the order of their first vertices. Edges of weight 0 carry no heat, so they do not
+/// connect vertices.
 struct Components {
   std::vector<Index> of_vertex;
   Index count = 0;
@@ -22,7 +22,7 @@ struct Components {
 
 Components connected_components(const TangentGraph& graph);
 
-/// Mean length of the edges of vertices, world units; 0 where they have none.
+/// Mean length of the edges at some vertices, world units; 0 if they have no edges.
 double mean_edge(const TangentGraph& graph, std::span<const Vertex> vertices);
 
 }  // namespace ahm

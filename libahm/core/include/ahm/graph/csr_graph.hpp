@@ -1,5 +1,5 @@
 /// \file
-/// The stored graph that every eager backend fills, and that a user can fill by hand.
+/// A tangent graph stored in arrays. Most backends build one; users can fill its arrays themselves.
 ///
 /// \code
 /// ahm::CsrGraphData g;                       // two vertices on a line, one apart (d = 1)
@@ -31,21 +31,20 @@ struct CsrGraphData {
   std::vector<double> weights;             ///< one per directed edge
   std::vector<double> logs;                ///< d per directed edge
   std::vector<double> transports;          ///< 2 (rotation2) or d*d (block) per directed edge
-  std::vector<double> masses;              ///< n
-  std::vector<Frame> frames;               ///< n, or empty
+  std::vector<double> masses;              ///< one per vertex
+  std::vector<Frame> frames;               ///< one per vertex, or empty
   double length_unit = 1.0;                ///< power of two; see TangentGraph::length_unit
   std::optional<double> mean_edge_length;  ///< default: the mean of |e_ij| over all edges
   bool is_delaunay = false;                ///< see TangentGraph::is_delaunay
-  /// n, or empty; see TangentGraph::component_edge_length
+  /// one per vertex, or empty; see TangentGraph::component_edge_length
   std::vector<double> component_edge_lengths{};
 };
 
-/// A `TangentGraph` held in flat arrays.
+/// A `TangentGraph` stored in flat arrays.
 class CsrGraph final : public TangentGraph {
  public:
-  /// Takes the arrays over.
-  /// @throws InvalidGraph when array lengths disagree or a neighbour is out of range. The graph's laws are checked by
-  /// `validate`.
+  /// Takes ownership of the arrays. Call `validate` to check the graph contract.
+  /// @throws InvalidGraph (array lengths disagree, or a neighbor is out of range)
   explicit CsrGraph(CsrGraphData data);
 
   Index size() const noexcept override { return static_cast<Index>(data_.masses.size()); }

@@ -1,5 +1,5 @@
 /// \file
-/// Transports between tangent spaces, in either of the two ways they are stored. Code outside never asks which.
+/// Parallel transports between tangent spaces, with the same interface for both kinds of storage.
 ///
 /// \code
 /// ahm::Star star = graph.star(i);
@@ -21,18 +21,18 @@ enum class TransportKind {
   block,      ///< any d, rotations and reflections: d x d orthogonal matrix, row major
 };
 
-/// What all transports of a graph have in common.
+/// The storage layout of the transports of a graph.
 struct TransportLayout {
   TransportKind kind = TransportKind::rotation2;
   int dimension = 2;
 
-  /// Numbers that hold one transport: 2 or d x d.
+  /// Numbers per transport: 2 or d x d.
   constexpr std::size_t width() const {
     return kind == TransportKind::rotation2 ? 2 : static_cast<std::size_t>(dimension) * dimension;
   }
-  /// Vector fields that carry a frame: 1 (its first axis, the others follow by turning it) or d.
+  /// Number of vector fields that represent a frame: 1 for rotation2 (the second axis is the first one rotated), otherwise d.
   constexpr Index columns() const { return kind == TransportKind::rotation2 ? 1 : dimension; }
-  /// Where a stored transport has component `c` of the image of axis `a` < columns().
+  /// Position of component `c` of the image of axis `a` < columns() in a stored transport.
   constexpr std::size_t place(int c, int a) const {
     return kind == TransportKind::rotation2 ? static_cast<std::size_t>(c) : static_cast<std::size_t>(c * dimension + a);
   }
@@ -40,14 +40,14 @@ struct TransportLayout {
   constexpr bool may_reflect() const { return kind == TransportKind::block; }
 
   void set_identity(double* transport) const;
-  /// Stores d x d numbers, row major; a rotation2 keeps the first column.
+  /// Stores a d x d matrix, row major. For rotation2, only its first column.
   void store(std::span<const double> matrix, double* transport) const;
-  /// Replaces what is stored by the nearest orthogonal map (the polar factor, [Hig86]).
-  /// @param transport  its largest entry is of order one
+  /// Replaces a stored matrix by the nearest orthogonal one (the polar factor, [Hig86]).
+  /// @param transport  its largest entry must be of order one
   void make_orthogonal(double* transport) const;
 };
 
-/// One transport R, an orthogonal map from one tangent space to another. A view.
+/// A view of one transport R, an orthogonal map from one tangent space to another.
 class Transport {
  public:
   /// @param numbers  layout.width() numbers, which must outlive this object
@@ -67,7 +67,7 @@ class Transport {
     }
   }
 
-  /// out = R^-1 x, written `stride` numbers apart.
+  /// out = R^-1 x. The components of `out` are `stride` numbers apart.
   void apply_inverse(const double* x, double* out, std::size_t stride = 1) const {
     if (complex_) {
       out[0] = x[0] * R_[0] + x[1] * R_[1];
@@ -92,7 +92,7 @@ class Transport {
       for (int b = 0; b < d_; ++b) out[c] += factor * R_[c * d_ + b] * x[b];
   }
 
-  /// out += factor R S, where S is stored as R is.
+  /// out += factor R S. S and `out` have the layout of R.
   void add_product(double factor, const double* S, double* out) const {
     if (complex_) return add_to(factor, S, out);
     for (int c = 0; c < d_; ++c)
@@ -100,7 +100,7 @@ class Transport {
         for (int a = 0; a < d_; ++a) out[c * d_ + a] += factor * R_[c * d_ + b] * S[b * d_ + a];
   }
 
-  /// out += factor R^-1, stored as R is.
+  /// out += factor R^-1. `out` has the layout of R.
   void add_inverse(double factor, double* out) const {
     if (complex_) {
       out[0] += factor * R_[0];
@@ -111,7 +111,7 @@ class Transport {
       for (int b = 0; b < d_; ++b) out[a * d_ + b] += factor * R_[b * d_ + a];
   }
 
-  /// R as d x d numbers, row major.
+  /// Writes R as a d x d matrix, row major.
   void matrix(double* out) const {
     if (complex_) {
       out[0] = R_[0];
@@ -123,11 +123,11 @@ class Transport {
     for (int k = 0; k < d_ * d_; ++k) out[k] = R_[k];
   }
 
-  /// Whether R turns orientation over.
+  /// Whether R reverses orientation.
   bool reflects() const;
-  /// Largest entry of R R^T - id.
+  /// Largest absolute entry of R R^T - id.
   double distance_from_orthogonal() const;
-  /// Largest entry of R S - id, with S of the same layout.
+  /// Largest absolute entry of R S - id. S has the layout of R.
   double distance_from_inverse(const Transport& S) const;
 
  private:

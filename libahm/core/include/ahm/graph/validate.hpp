@@ -1,25 +1,24 @@
 /// \file
-/// The laws of a tangent graph, checked.
+/// Checks the contract of a tangent graph.
 #pragma once
 
 #include "ahm/graph/tangent_graph.hpp"
 
 namespace ahm {
 
-/// Checks every law a `TangentGraph` must keep and names the first one that is broken, with its vertex or edge:
+/// Checks all requirements of a `TangentGraph`. The message names the first violation and its vertex or edge:
 ///  - n >= 1, d >= 1; `rotation2` only for d = 2; mean edge length and unit of length finite and > 0;
 ///  - masses finite and > 0;
-///  - neighbours in range, no self loops; weights, logs and transports finite;
+///  - neighbors in range, no self loops; weights, logs and transports finite;
 ///  - transports orthogonal: R R^T = id to 1e-8;
-///  - each edge has its reverse, with the same weight, and R_ij R_ji = id to 1e-8. Parallel edges are matched one to
-///  one.
+///  - each edge has a reverse edge with the same weight, and R_ij R_ji = id to 1e-8. Parallel edges are matched one to one.
 ///
 /// Time is linear in the number of edges times the largest degree.
 ///
 /// \code
 /// ahm::validate(graph);  // throws InvalidGraph "edge 3 -> 17: the transport is not orthogonal"
 /// \endcode
-/// @param threads  0: one per core; what is thrown does not depend on it
+/// @param threads  0: one per core. The exception does not depend on it
 /// @throws InvalidGraph
 void validate(const TangentGraph& graph, unsigned threads = 1);
 

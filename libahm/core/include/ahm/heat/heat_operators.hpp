@@ -1,8 +1,8 @@
 /// \file
-/// The two operators of the affine heat method, factored once: A = M + tau L (scalar) and B = M + tau L^nabla
-/// (connection Laplacian), symmetric positive definite on a graph with weights >= 0.
+/// The two operators of the affine heat method, factored once: A = M + tau L with the scalar Laplacian, and B = M + tau L^nabla with
+/// the connection Laplacian. Both are symmetric positive definite if all weights are >= 0.
 ///
-/// Most users want `LogMapSolver`, or the functions in vector_heat.hpp; both stand on this class.
+/// Most programs use `LogMapSolver` or the functions in vector_heat.hpp, which are built on this class.
 ///
 /// \code
 /// ahm::HeatOperators heat(graph, {.t_coef = 1.0});
@@ -22,7 +22,7 @@
 
 namespace ahm {
 
-/// What the factorization cost.
+/// Time and memory of the factorization.
 struct FactorStatistics {
   double assemble_seconds = 0;
   double analyze_seconds = 0;
@@ -32,13 +32,12 @@ struct FactorStatistics {
   std::size_t bytes = 0;  ///< memory of both factors
 };
 
-/// A and B of one graph, factored. Immutable: all member functions may be called from many threads at once.
+/// The factored operators A and B of one graph. Immutable: all member functions may be called from many threads at once.
 class HeatOperators {
  public:
-  /// Assembles and factorizes A and B, for one diffusion time.
-  /// @throws InvalidGraph, InvalidArgument (t_coef), NotPositiveDefinite (an operator is not positive definite, or
-  /// fails
-  ///         its residual check), ResourceExhausted (memory), Cancelled
+  /// Assembles and factors A and B, for one diffusion time.
+  /// @throws InvalidGraph, InvalidArgument (t_coef), NotPositiveDefinite (an operator is not positive definite, or its residual is too
+  ///         large), ResourceExhausted (memory), Cancelled
   HeatOperators(const TangentGraph& graph, const FactorOptions& options = {});
   ~HeatOperators();
   HeatOperators(HeatOperators&&) noexcept;
@@ -47,17 +46,17 @@ class HeatOperators {
   Index size() const noexcept;
   int dimension() const noexcept;
   TransportKind transport_kind() const noexcept;
-  /// Of each vertex, in squared graph units: t_coef h_c^2 with h_c the mean edge length of its component.
+  /// Diffusion time of each vertex, in squared graph units: t_coef h_c^2, with h_c the mean edge length of its component.
   std::span<const double> tau() const noexcept;
   const FactorStatistics& statistics() const noexcept;
 
-  /// X <- (c A)^-1 X for `columns` right-hand sides, column major n x columns. c is the fixed power of two that brings
-  /// the operators to order one; it is the same for A and B and cancels in every quotient of solutions.
-  /// @param threads  that share a large factor among a few columns (0: one per core); the same bits on any number
-  /// @throws InvalidArgument when the span's length is not n * columns
+  /// X <- (c A)^-1 X for `columns` right-hand sides, column major n x columns. The power of two c (`scaling`) brings the operators to
+  /// order one. It is the same for A and B, and cancels in every quotient of solutions.
+  /// @param threads  used for a large factor and a few columns (0: one per core); the result has the same bits for any number
+  /// @throws InvalidArgument (the length of X is not n * columns)
   void solve_scalar(std::span<double> X, Index columns, unsigned threads = 1) const;
   /// X <- (c B)^-1 X for `columns` vector fields, column major: each column holds n vectors of d numbers.
-  /// @throws InvalidArgument when the span's length is not n * d * columns
+  /// @throws InvalidArgument (the length of X is not n * d * columns)
   void solve_vector(std::span<double> X, Index columns, unsigned threads = 1) const;
   /// The constant c.
   double scaling() const noexcept;
@@ -67,7 +66,7 @@ class HeatOperators {
   Index component_count() const noexcept;
 
  private:
-  friend struct HeatOperatorsAccess;  // in the library only: operators of another system than Cholesky factors
+  friend struct HeatOperatorsAccess;  // internal: makes operators that use another solver than Cholesky factors
   HeatOperators() = default;
 
   struct Impl;

@@ -1,5 +1,5 @@
 /// \file
-/// What every computation by heat shares: one object, honoured by all of them.
+/// Options shared by all computations with the heat method.
 ///
 /// \code
 /// ahm::LogMapSolver solver(graph, {.t_coef = 2, .threads = 4});
@@ -18,9 +18,9 @@ namespace ahm {
 
 /// How the linear systems are solved (docs/concepts/march.md).
 enum class Strategy {
-  automatic,  ///< one of the others, as size, number of maps and memory suggest
-  global,     ///< one factorization of the whole graph, which serves every source; reaches about 700 edges
-  march,      ///< a banded solve, outwards from the source: time and memory linear in n, any distance
+  automatic,  ///< chooses by the size of the graph, the number of maps and the memory
+  global,     ///< one factorization of the whole graph for all sources; reaches about 700 edges
+  march,      ///< solves band after band, outwards from the source: time and memory linear in n, any distance
 };
 
 /// Options of the factorization (`HeatOperators`).
@@ -51,12 +51,11 @@ struct HeatOptions {
   Variant variant = Variant::adaptive;
 
   Strategy strategy = Strategy::automatic;
-  /// For `automatic`: the number of maps to be made; 0: many. A single map of a large graph is faster by march.
+  /// For `automatic`: the number of maps to compute; 0: many. A single map of a large graph is faster by `march`.
   Index expected_maps = 0;
-  /// For `automatic`: bytes that factors may take; 0: half of the machine's memory. A graph whose factors would need more
-  /// is marched.
+  /// For `automatic`: bytes available for the factors; 0: half of the machine's memory. If they need more, the strategy is `march`.
   std::size_t memory = 0;
-  /// For marches: the largest difference to a global solve, relative; in [1e-14, 0.1].
+  /// For `march`: the largest relative difference to a global solve, in [1e-14, 0.1].
   double accuracy = 1e-9;
 
   Ordering ordering = Ordering::amd;

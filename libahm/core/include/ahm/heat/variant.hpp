@@ -1,5 +1,5 @@
 /// \file
-/// The variants of the method, listed once. NAME is libahm/core/src/maps/variants/NAME.cpp, which defines NAME_system().
+/// The list of variants of the method. Variant NAME is implemented in libahm/core/src/maps/variants/NAME.cpp, by NAME_system().
 #pragma once
 
 #define AHM_VARIANTS(NAME)               \

@@ -1,5 +1,5 @@
 /// \file
-/// Output files that are whole or not there.
+/// Output files that appear complete or not at all.
 ///
 /// \code
 /// ahm::io::AtomicFile file("result.csv");
@@ -17,11 +17,11 @@
 
 namespace ahm::io {
 
-/// Writes to a temporary name in the target's directory and renames on `commit`; without a commit nothing is left
-/// behind. What a process that was killed left in that directory is removed when the next one writes there.
+/// Writes to a temporary file in the target's directory and renames it on `commit`. Without a commit, the destructor removes
+/// the temporary file. The next process that writes to the directory removes temporary files of killed processes.
 ///
-/// A target that is a pipe or a device (/dev/stdout) is written to directly. A symbolic link is followed, and the file
-/// it leads to is replaced, with its permissions kept.
+/// Pipes and devices (/dev/stdout) are written directly. For a symbolic link, the file that it points to is replaced; its
+/// permissions are preserved.
 class AtomicFile {
   friend class FileSet;
 
@@ -33,16 +33,17 @@ class AtomicFile {
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
 
-  /// Appends bytes. @throws IoError when the disk is full, the pipe is closed (fault "pipe_closed"), or the system reports
-  /// another fault
+  /// Appends bytes.
+  /// @throws IoError when the disk is full, the pipe is closed (fault "pipe_closed"), or the system reports another error
   void write(std::string_view bytes);
-  /// The name the file has until `commit`, for libraries that open it themselves (instead of `write`); empty where the
-  /// target is written directly.
+  /// Path of the temporary file, for libraries that open the file themselves instead of calling `write`. Empty if the target
+  /// is written directly.
   const std::filesystem::path& temporary() const noexcept { return temporary_; }
-  /// Writes what is left and waits until it is on the disk: for several files, of which none is to be had without the others.
+  /// Flushes the buffer to the disk. If several files belong together, finish all of them before committing the first.
   /// @throws IoError as `write`
   void finish();
-  /// `finish`, unless that has been done, and gives the file its name, or has its `FileSet` do so. @throws IoError as `write`
+  /// Finishes the file if necessary and renames it to the target. Inside a `FileSet`, `FileSet::commit` renames it.
+  /// @throws IoError as `write`
   void commit();
 
  private:
@@ -52,17 +53,17 @@ class AtomicFile {
   void discard() noexcept;
   [[noreturn]] void fail(int error);
 
-  std::filesystem::path path_;       // as the caller named it, for messages
-  std::filesystem::path target_;     // without symbolic links
-  std::filesystem::path temporary_;  // empty when written directly
+  std::filesystem::path path_;       // path from the caller, for messages
+  std::filesystem::path target_;     // path with symbolic links resolved
+  std::filesystem::path temporary_;  // empty if the target is written directly
   std::string buffer_;
   int descriptor_ = -1;
   bool finished_ = false;
-  int slot_ = -1;  // in the registry of unfinished files
+  int slot_ = -1;  // index in the registry of unfinished files
 };
 
-/// Files that are to be had together: those that this thread commits while the set lives get their names when it is committed, one
-/// right after the other, and none without. Sets may be nested; files belong to the innermost.
+/// A group of files that appear together. While a set exists, files committed by this thread keep their temporary names;
+/// `commit` then renames all of them in a row. Sets can be nested; a file belongs to the innermost set.
 class FileSet {
  public:
   FileSet() noexcept;
@@ -70,7 +71,7 @@ class FileSet {
   FileSet(const FileSet&) = delete;
   FileSet& operator=(const FileSet&) = delete;
 
-  /// Of the innermost set of this thread, if there is one. @throws IoError where a file cannot be renamed
+  /// Renames the files of this thread's innermost set, if there is a set. @throws IoError if a file cannot be renamed
   static void commit();
 
  private:
@@ -80,16 +81,16 @@ class FileSet {
   std::vector<AtomicFile> files_;
 };
 
-/// Whether a path leads to what cannot be replaced by a renamed file: a pipe, a device, or the process's own output
-/// (/dev/stdout), wherever that has been redirected to.
+/// Whether the path cannot be replaced by renaming a file: it is a pipe, a device, or the process's own output
+/// (/dev/stdout, even if redirected to a file).
 bool is_stream(const std::filesystem::path& path);
 
-/// The file that an `AtomicFile` of this path makes or replaces: what a chain of symbolic links leads to, whether it exists or not.
+/// The file that an `AtomicFile` with this path creates or replaces: the end of a chain of symbolic links, which need not exist.
 std::filesystem::path without_links(std::filesystem::path path);
 
-/// Deletes the temporary files of all uncommitted `AtomicFile`s of the process, whatever its other threads do: one that
-/// wants another `AtomicFile` from now on, or misses its own, waits for the end. Async-signal-safe: for a handler of
-/// SIGINT, SIGTERM or SIGHUP that ends the process afterwards.
+/// Deletes the temporary files of all uncommitted `AtomicFile`s of the process. A thread that afterwards creates an
+/// `AtomicFile`, or fails because its file is gone, blocks until the process ends. Async-signal-safe: for a handler of SIGINT,
+/// SIGTERM or SIGHUP that then ends the process.
 void remove_unfinished_files() noexcept;
 
 }  // namespace ahm::io

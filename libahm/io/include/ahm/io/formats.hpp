@@ -1,5 +1,5 @@
 /// \file
-/// Which kinds of files there are, for help texts and file dialogs.
+/// The supported file extensions, for help texts and file dialogs.
 #pragma once
 
 #include <filesystem>
@@ -8,16 +8,16 @@
 
 namespace ahm::io {
 
-/// What one does with a file.
+/// An operation on a file.
 enum class Use {
   read,            ///< `read`
   write,           ///< `write`: rows
   write_textured,  ///< `write_textured`: meshes with textures
 };
 
-/// Extensions in lower case, with their dot, in the order in which people should see them.
+/// Extensions in lower case, with the dot, in the order in which they are shown to users.
 std::vector<std::string> extensions(Use use);
-/// The extension of a name in lower case with its dot, as they have it; empty: none.
+/// The extension of a file name in lower case, with the dot; empty if there is none.
 std::string lower_extension(const std::filesystem::path& path);
 
 }  // namespace ahm::io

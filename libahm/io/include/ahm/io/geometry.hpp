@@ -1,5 +1,5 @@
 /// \file
-/// What a file holds: points, perhaps normals and colors, perhaps polygons.
+/// The contents of a file: points, and optionally normals, colors and polygons.
 ///
 /// \code
 /// ahm::io::Geometry g = ahm::io::read("bunny.ply");
@@ -20,35 +20,38 @@
 
 namespace ahm::io {
 
-/// A number per point that is neither position, normal nor color.
+/// A scalar attribute of the points, other than positions, normals and colors.
 struct Property {
-  std::string name;            ///< "intensity", "classification"
-  std::vector<double> values;  ///< n
+  std::string name;            ///< for example "intensity" or "classification"
+  std::vector<double> values;  ///< n values
 };
 
-/// Whence the points of a PCD file were seen, and in which picture.
+/// Pose of the sensor of a PCD file, and size of its range image.
 struct Acquisition {
-  std::size_t width = 0, height = 1;  ///< point i is pixel i % width of line i / width; height 1: there is no picture
-  Vec3 position{};                    ///< of the sensor
-  std::array<double, 4> orientation{1, 0, 0, 0};  ///< of the sensor: a quaternion w, x, y, z
+  std::size_t width = 0, height = 1;              ///< point i is pixel i % width of row i / width; height 1: no image
+  Vec3 position{};                                ///< position of the sensor
+  std::array<double, 4> orientation{1, 0, 0, 0};  ///< orientation of the sensor: a quaternion w, x, y, z
 };
 
-/// Points and polygons as they stand in a file: same order, same precision, nothing merged, dropped or checked for
-/// shape.
+/// Points and polygons of a file, in the file's order and precision. Nothing is merged or removed, and shapes are not checked.
 struct Geometry {
-  std::vector<Vec3> points;                         ///< n; NaN and infinity are passed through as stored
+  std::vector<Vec3> points;                         ///< n points; may contain NaN and infinity, as in the file
   std::vector<Vec3> normals;                        ///< empty or n, not normalized
-  std::vector<std::array<std::uint8_t, 3>> colors;  ///< empty or n; red, green, blue
+  std::vector<std::array<std::uint8_t, 3>> colors;  ///< empty or n; red, green, blue in [0, 255]
   std::vector<Property> properties;
-  std::optional<Acquisition> acquisition;  ///< width times height is n
-  std::vector<Offset> face_begin;          ///< empty (cloud) or faces + 1; face f = [face_begin[f], face_begin[f + 1])
+  std::optional<Acquisition> acquisition;  ///< width * height is n
+  std::vector<Offset> face_begin;          ///< empty (cloud) or faces + 1; face f is [face_begin[f], face_begin[f + 1])
   std::vector<Index> face_vertices;        ///< vertex numbers, each in [0, n)
   std::string format;                      ///< for messages, e.g. "PLY binary little endian"
-  /// What was ignored, or taken for something: goes_on_after_faces, goes_on_after_elements (the rest of the file),
-  /// element_ignored (its name), header_lines_ignored (their number), statements_ignored (their number; the first of
-  /// their keywords), colors_unknown (neither fractions of 1 nor whole levels), colors_not_packed, normals_not_by_vertex,
-  /// vertex_extras (numbers behind x, y, z), columns_as_colors (the numbers of the first and the last), columns_ignored
-  /// (the number of the last; from 4), column_ignored (its name: it holds what is no number), lines_ignored (the number of sets of lines).
+  /// Data that was ignored or interpreted. Identifiers, with their values and names in parentheses:
+  /// - goes_on_after_faces, goes_on_after_elements: the rest of the file is ignored
+  /// - element_ignored (name of the element), header_lines_ignored (number of lines)
+  /// - statements_ignored (number of statements; their first keywords)
+  /// - colors_unknown: colors are neither fractions of 1 nor whole levels; colors_not_packed
+  /// - normals_not_by_vertex; vertex_extras: numbers after x, y, z are ignored
+  /// - columns_as_colors (numbers of the first and the last column)
+  /// - columns_ignored (number of the last column; the first is 4), column_ignored (its name): it contains other data than numbers
+  /// - lines_ignored (number of sets of lines)
   std::vector<Warning> warnings;
 
   std::size_t face_count() const noexcept { return faces().size(); }

@@ -1,5 +1,5 @@
 /// \file
-/// Files of images: PNG in and out, JPEG in.
+/// Image files: reads PNG and JPEG, writes PNG.
 ///
 /// \code
 /// ahm::Image logo = ahm::io::read_image("logo.png");
@@ -15,18 +15,18 @@
 
 namespace ahm::io {
 
-/// Whether this build can read and write images (needs stb).
+/// Whether this build can read and write images (requires stb).
 bool has_images() noexcept;
 
 /// Reads a PNG or JPEG file.
-/// @throws IoError naming the file and what is wrong with it
+/// @throws IoError with the file name and the reason
 Image read_image(const std::filesystem::path& path);
 
-/// The image as the bytes of a PNG file.
-/// @throws InvalidArgument (size and pixels do not fit), IoError (no stb)
+/// Encodes an image as a PNG file in memory.
+/// @throws InvalidArgument (the size does not match the number of pixels), IoError (this build has no stb)
 std::string png_bytes(const Image& image);
 
-/// @throws as `png_bytes`, IoError
+/// Writes a PNG file. @throws as `png_bytes`; IoError
 void write_png(const std::filesystem::path& path, const Image& image);
 
 }  // namespace ahm::io

@@ -1,5 +1,5 @@
 /// \file
-/// Named arrays to a NumPy .npz file.
+/// Writes named arrays to a NumPy .npz file.
 ///
 /// \code
 /// ahm::io::NpzFile file("maps.npz");
@@ -21,33 +21,33 @@
 
 namespace ahm::io {
 
-/// How doubles are stored. A complex element takes two of them: real part, imaginary part.
+/// Storage type of doubles. A complex element consists of two values: real part, imaginary part.
 enum class NpyType { float64, float32, complex128, complex64 };
 
 /// Whether this build can write .npz files (AHM_WITH_MINIZIP).
 bool has_npz() noexcept;
 
-/// A .npz file: an uncompressed zip archive of little endian .npy arrays in C order, of any size. The file appears on
+/// A .npz file: an uncompressed zip archive of little-endian .npy arrays in C order, of any size. The file appears on
 /// `commit`, or not at all.
 class NpzFile {
  public:
-  /// @throws IoError when the file cannot be created, is a pipe, or this build has no minizip
+  /// @throws IoError when the file cannot be created or is a pipe, or this build has no minizip
   explicit NpzFile(const std::filesystem::path& path);
   ~NpzFile();
   NpzFile(const NpzFile&) = delete;
   NpzFile& operator=(const NpzFile&) = delete;
 
-  /// @param shape  numbers of elements, slowest index first; their product is the length of `values`, half of it for
-  /// complex types
-  /// @throws InvalidArgument when shape and length disagree; IoError
+  /// Adds an array.
+  /// @param shape  extents, slowest index first. Their product is the length of `values`, or half of it for complex types
+  /// @throws InvalidArgument if shape and length do not match; IoError
   void add(const std::string& name, const std::vector<std::size_t>& shape, std::span<const double> values,
            NpyType type = NpyType::float64);
   void add(const std::string& name, const std::vector<std::size_t>& shape, std::span<const std::int32_t> values);
   void add(const std::string& name, const std::vector<std::size_t>& shape, std::span<const std::int64_t> values);
-  /// Truth values: 0 or 1.
+  /// Adds an array of booleans, stored as 0 or 1.
   void add(const std::string& name, const std::vector<std::size_t>& shape, std::span<const std::uint8_t> values);
 
-  /// Writes the directory of the archive and gives the file its name. @throws IoError
+  /// Writes the directory of the archive and renames the file to its target. @throws IoError
   void commit();
 
  private:

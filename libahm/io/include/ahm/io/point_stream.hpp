@@ -1,5 +1,5 @@
 /// \file
-/// The points of a file that need not fit into memory.
+/// Reads points block by block, for files larger than memory.
 ///
 /// \code
 /// ahm::io::PointStream stream("scan.ply");
@@ -17,25 +17,27 @@
 
 namespace ahm::io {
 
-/// Reads the points of a PLY, PCD, LAS, XYZ, TXT, ASC, CSV or PTS file, or of one of these compressed with gzip, block by block, in
-/// the order of the file: those that `read` finds. Text and what is compressed are read once and for all into a file without a
-/// name, 24 bytes per point, which is gone with this object or the process.
+/// Reads the points of a PLY, PCD, LAS, XYZ, TXT, ASC, CSV or PTS file, optionally compressed with gzip. The points and their order
+/// are the same as with `read`. The constructor converts text and compressed files to an unnamed temporary file of 24 bytes per
+/// point, which disappears with this object or the process.
 class PointStream {
  public:
-  /// @param scratch  folder whose disk has room for such a file
-  /// @throws IoError as `read`, and when the file is none that can be streamed (of another format; lists at vertices of
-  /// binary PLY; coordinates of PCD that are whole numbers of 8 bytes, or in text such as do not fit their type), has faces, or the
-  /// disk is full; fault "no_cloud" where it has faces, or is of another format
+  /// @param scratch  folder for the temporary file
+  /// @throws IoError as `read`, when the disk is full, or when the file cannot be streamed:
+  /// - it has faces or another format (fault "no_cloud")
+  /// - binary PLY: the vertices have list properties
+  /// - PCD: coordinates are integers of 8 bytes, or numbers in text do not fit their type
   explicit PointStream(const std::filesystem::path& path,
                        const std::filesystem::path& scratch = std::filesystem::temp_directory_path());
   ~PointStream();
   PointStream(PointStream&&) noexcept;
   PointStream& operator=(PointStream&&) noexcept;
 
+  /// Number of points of the file.
   std::uint64_t size() const noexcept;
-  /// Whether every point has a normal, which is not read.
+  /// Whether the file has a normal for every point. Normals are not read.
   bool has_normals() const noexcept;
-  /// The next points, as many as fit. @return how many; 0 at the end
+  /// Fills `points` with the next points. @return their number; 0 at the end
   /// @throws IoError
   std::size_t read(std::span<Vec3> points);
   /// Goes back to the first point.

@@ -1,5 +1,5 @@
 /// \file
-/// Meshes and point clouds from files.
+/// Reads meshes and point clouds from files.
 ///
 /// \code
 /// auto geometry = ahm::io::read("scan.pcd");
@@ -17,42 +17,41 @@
 
 namespace ahm::io {
 
-/// Reads .ply, .pcd, .las, .xyz, .txt, .asc, .csv, .pts, .off, .obj, .stl, .glb, .gltf, .vtp or .vtk; the extension (in any case)
-/// chooses the format. Files compressed with gzip are unpacked first; theirs is the extension before .gz.
+/// Reads .ply, .pcd, .las, .xyz, .txt, .asc, .csv, .pts, .off, .obj, .stl, .glb, .gltf, .vtp or .vtk. The extension (in any case)
+/// selects the format. Files compressed with gzip are unpacked first; the extension before .gz selects their format.
 ///
-/// Text numbers are read the same way in every locale and keep double precision; vertices and polygons keep the file's
-/// order. A file that is cut short, lies about its counts, or holds something that is no number is refused as a whole.
-/// - PLY: text or binary of either byte order; normals nx ny nz and colors red green blue when present,
-///   further numbers of the vertices as properties.
+/// Numbers in text are independent of the locale and have double precision. Vertices and polygons keep the file's order. A file
+/// that is truncated, has wrong counts, or contains an invalid number is rejected as a whole.
+/// - PLY: text or binary of either byte order; normals nx ny nz and colors red green blue if present; other scalar properties of
+///   the vertices become properties.
 /// - PLY triangle strips become triangles; other elements are ignored with a warning.
 /// - OFF: text, polygons; the normals of NOFF, the colors of COFF.
-/// - OBJ: polygons, relative indices; `vn` only when numbered like the vertices; colors behind x y z.
-/// - PCD: text, binary or compressed, through PCL (build option AHM_WITH_PCL); further fields as properties, those of several
-///   values with _0, _1, ... behind their names; width, height and viewpoint as acquisition.
-/// - LAS: versions 1.0 to 1.4, point formats 0 to 10, not compressed; intensity and classification as properties.
-/// - XYZ, TXT, ASC, PTS, CSV: columns separated by blanks, commas, semicolons (CSV: or tabs), named x, y, z (nx, ny, nz;
-///   r, g, b) or 3, 6 with normals (or colors, when all are whole numbers up to 255) or 9 with both.
-/// - PTS: the fourth of 4 or 7 columns is the property intensity, the last three of 7 are colors.
-/// - GLB, GLTF: the triangles and points of the scene, placed by their nodes; triangles are welded at equal positions.
-/// - VTP, VTK: polygonal data; arrays of the points are normals, colors or properties, strips become triangles (VTP: build
-///   option AHM_WITH_PUGIXML).
-/// @throws IoError naming the file, the line or byte, the value, and what to do
-/// @throws ResourceExhausted when memory does not suffice, or a file would fill more than a third of what is free when
-/// unpacked
-/// @param extension  of the format, whatever the file is called; empty: that of the name
+/// - OBJ: polygons, relative indices; `vn` only if normals and vertices have the same numbers; colors after x y z.
+/// - PCD: text, binary or compressed, through PCL (build option AHM_WITH_PCL). Other fields become properties; fields of several
+///   values get the suffixes _0, _1, .... Width, height and viewpoint become the acquisition.
+/// - LAS: versions 1.0 to 1.4, point formats 0 to 10, not compressed; intensity and classification become properties.
+/// - XYZ, TXT, ASC, PTS, CSV: columns separated by blanks, commas, semicolons (CSV: or tabs). Named columns: x, y, z (nx, ny, nz;
+///   r, g, b). Unnamed: 3 columns, 6 with normals (or colors, if all are whole numbers up to 255), 9 with both.
+/// - PTS: the fourth of 4 or 7 columns is the property intensity; the last three of 7 are colors.
+/// - GLB, GLTF: the triangles and points of the scene, transformed by their nodes; triangles are welded at equal positions.
+/// - VTP, VTK: polygonal data; point arrays become normals, colors or properties; strips become triangles (VTP: build option
+///   AHM_WITH_PUGIXML).
+/// @throws IoError with the file, the line or byte, the value, and what to do
+/// @throws ResourceExhausted if there is not enough memory, or an unpacked file would use more than a third of the free memory
+/// @param extension  selects the format independently of the file name; empty: use the extension of the file name
 Geometry read(const std::filesystem::path& path, const std::string& extension = {});
 
-/// The same from a stream, read to its end; messages call it '-'.
-/// @param extension  of the format, such as ".xyz"; empty: PLY, PCD, LAS, OFF, GLB, VTP, VTK and text STL are told by their first
-/// bytes, others are refused (fault "unknown_bytes")
-/// @throws as for files
+/// Reads a mesh or point cloud from a stream, to its end; messages call it '-'.
+/// @param extension  selects the format, for example ".xyz". If empty, the first bytes identify PLY, PCD, LAS, OFF, GLB, VTP,
+/// VTK and text STL; other formats are rejected (fault "unknown_bytes")
+/// @throws as `read` of a file
 Geometry read(std::istream& stream, const std::string& extension = {});
 
-/// The same from standard input, not through std::cin, which takes errors of the system for its end.
-/// @throws as for files
+/// Reads a mesh or point cloud from standard input. Does not use std::cin, which reports system errors as the end of the stream.
+/// @throws as `read` of a file
 Geometry read_standard_input(const std::string& extension = {});
 
-/// The files beside it that a file is read with: the buffers of a .gltf. None where it cannot be read.
+/// Other files that a file refers to: the buffers of a .gltf. Empty if the file cannot be read.
 std::vector<std::filesystem::path> files_beside(const std::filesystem::path& path);
 
 }  // namespace ahm::io

@@ -1,5 +1,5 @@
 /// \file
-/// A directory of its own, for as long as an object lives.
+/// A temporary directory that is removed with its object.
 #pragma once
 
 #include <stdlib.h>
@@ -13,15 +13,16 @@
 
 namespace ahm::io {
 
-/// Made with a name nobody has, for this user alone; removed with all it holds.
+/// Creates a directory with a unique name that only this user can access. The destructor removes it with its contents.
 class TemporaryFolder {
  public:
-  /// @param prefix  of the name. @throws IoError
+  /// @param prefix  prefix of the directory's name
+  /// @throws IoError
   explicit TemporaryFolder(const std::string& prefix) {
     const std::filesystem::path place = std::filesystem::temp_directory_path();
     std::string name = (place / (prefix + "XXXXXX")).string();
     if (::mkdtemp(name.data()) == nullptr)
-      throw IoError("cannot make a folder in '" + place.string() + "': " + std::generic_category().message(errno));
+      throw IoError("cannot create a folder in '" + place.string() + "': " + std::generic_category().message(errno));
     directory_ = name;
   }
   ~TemporaryFolder() {

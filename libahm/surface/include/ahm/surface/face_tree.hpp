@@ -1,5 +1,5 @@
 /// \file
-/// The point of a mesh that is nearest to a position in space.
+/// Finds the point of a mesh that is nearest to a position in space.
 ///
 /// \code
 /// const ahm::FaceTree tree(positions, faces);                    // views: both must outlive the tree
@@ -16,34 +16,35 @@
 
 namespace ahm {
 
-/// A tree of boxes over the triangles of the faces (polygons as fans from their first corner). Immutable.
+/// A bounding-box tree over the triangles of the faces (polygons are split into fans from their first corner). Immutable.
 class FaceTree {
  public:
   struct Hit {
     FacePoint point;
-    Vec3 position;    ///< of the point, in the units of the positions
-    double distance;  ///< in space
+    Vec3 position;    ///< position of `point`, in the units of the positions
+    double distance;  ///< distance in space from the query to `position`
   };
 
-  /// O(n log n). Faces with corners that are not finite are left out.
-  /// @throws InvalidGeometry (no other faces)
+  /// O(n log n). Skips faces with corners that are not finite.
+  /// @throws InvalidGeometry (no face has finite corners)
   FaceTree(std::span<const Vec3> positions, const FaceList& faces);
 
-  /// @param position  finite
+  /// The nearest point of the faces. @param position  finite
   Hit nearest(const Vec3& position) const;
 
  private:
   struct Piece {
-    Index face, corner;  ///< corners 0, `corner`, `corner` + 1 of the face
+    Index face, corner;  ///< the triangle of corners 0, `corner` and `corner` + 1 of the face
   };
   struct Box {
     Vec3 low, high;
-    std::size_t begin, end;  ///< pieces
-    std::size_t second;      ///< the second half's box, 0 in a leaf; the first half's one follows this one
+    std::size_t begin, end;  ///< range in `pieces_`
+    std::size_t second;      ///< number of the second child, 0 in a leaf; the first child follows this box
   };
 
+  /// The nearest point of one triangle. All lengths times `scale` of the search.
   struct Look {
-    std::array<double, 3> weights;  ///< of its corners
+    std::array<double, 3> weights;  ///< barycentric coordinates in the triangle
     Vec3 position;
     double distance, size;  ///< size: the largest coordinate of the triangle
   };

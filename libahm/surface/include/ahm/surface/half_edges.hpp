@@ -1,6 +1,5 @@
 /// \file
-/// Flat half-edge arrays of triangles or polygons, and how to turn about a vertex in them. Not part of the public
-/// interface.
+/// Half-edge arrays of triangle or polygon meshes, and traversal around a vertex. Not part of the public interface.
 #pragma once
 
 #include <algorithm>
@@ -13,11 +12,11 @@
 
 namespace ahm::detail {
 
-/// A side of a face: number h of the corners of all faces, from the vertex there to that of the face's next corner. Of
-/// triangles, 3 f + s is side s of face f.
+/// A half-edge: one side of a face. Half-edge h starts at corner h, in the numbering of the corners of all faces, and ends at
+/// the next corner of the same face. In triangle meshes, side s of face f is 3 f + s.
 using Half = std::int32_t;
 
-/// In triangles.
+/// The next or previous half-edge of the same triangle.
 template <class H>
 H next(H h) {
   return h % 3 == 2 ? h - 2 : h + 1;
@@ -27,8 +26,8 @@ H previous(H h) {
   return h % 3 == 0 ? h + 2 : h - 1;
 }
 
-/// A corner met while turning counter-clockwise about its vertex. `half` starts at the vertex; `forward` says whether
-/// its face is oriented like the vertex, which on an orientable mesh is always so.
+/// A corner in a counterclockwise traversal around its vertex. `half` starts at the vertex. `forward` is true where the face
+/// has the orientation of the vertex, which is always so on an orientable mesh.
 struct Corner {
   Half half = -1;
   bool forward = true;
@@ -36,21 +35,22 @@ struct Corner {
   bool operator==(const Corner&) const = default;
 };
 
-/// The corner at the same vertex beyond a side of a corner's face.
-/// @param twin            of the side, and the half-edge after it; >= 0
-/// @param mirrored        whether the face there is oppositely oriented
-/// @param vertex_is_tail  of the side
+/// The next corner at the same vertex, across one side of a corner's face.
+/// @param twin            twin of the side, >= 0
+/// @param after_twin      half-edge after `twin`
+/// @param mirrored        whether the adjacent face has the opposite orientation
+/// @param vertex_is_tail  whether the vertex is the tail of the side
 inline Corner corner_beyond(Half twin, Half after_twin, bool mirrored, bool vertex_is_tail, bool forward) {
   return {vertex_is_tail == mirrored ? twin : after_twin, forward != mirrored};
 }
 
-/// Connectivity of faces glued along their sides: spans of a mesh, or of arrays being flipped.
+/// Connectivity of faces glued along their sides. Holds spans of a mesh, or of arrays whose edges are being flipped.
 struct HalfEdges {
   std::span<const Index> tail;             ///< vertex at the start of each half-edge
-  std::span<const Half> twin;              ///< opposite half-edge; -1 - the number of the boundary edge on the boundary
-  std::span<const std::uint8_t> mirrored;  ///< 1 where the two faces at it are oppositely oriented; empty: nowhere
-  std::span<const Offset> face_begin{};    ///< empty: triangles
-  std::span<const Index> face_of{};        ///< per half-edge; empty: triangles
+  std::span<const Half> twin;              ///< opposite half-edge; on the boundary: -1 - (number of the boundary edge)
+  std::span<const std::uint8_t> mirrored;  ///< 1 where the two faces have opposite orientations; empty: nowhere
+  std::span<const Offset> face_begin{};    ///< first corner of each face, faces + 1; empty: triangles
+  std::span<const Index> face_of{};        ///< face of each half-edge; empty: triangles
 
   Half size() const { return static_cast<Half>(tail.size()); }
   Half next(Half h) const {
@@ -64,14 +64,14 @@ struct HalfEdges {
   Index head(Half h) const { return tail[next(h)]; }
   bool is_mirrored(Half h) const { return !mirrored.empty() && mirrored[h]; }
 
-  /// The side of a corner met first when turning counter-clockwise, and the one met last.
+  /// The first (right) and the last (left) side of a corner in counterclockwise order.
   Half right(Corner c) const { return c.forward ? c.half : previous(c.half); }
   Half left(Corner c) const { return c.forward ? previous(c.half) : c.half; }
-  /// The corner beyond the left or right side; half < 0 on the boundary.
+  /// The neighboring corner across the left or right side; half < 0 on the boundary.
   Corner turn_left(Corner c) const { return beyond(left(c), !c.forward, c.forward); }
   Corner turn_right(Corner c) const { return beyond(right(c), c.forward, c.forward); }
 
-  /// The last corner before the boundary when turning clockwise from c, or c itself when there is no boundary.
+  /// The last corner before the boundary when turning clockwise from c; c itself where there is no boundary.
   Corner rightmost(Corner c) const {
     for (Corner at = c;;) {
       const Corner right = turn_right(at);
@@ -81,8 +81,8 @@ struct HalfEdges {
     }
   }
 
-  /// Numbers directed edges: the one that leaves, along side h, its tail (`from_tail`) or its head. Each half-edge has
-  /// the number of itself; boundary edges, which lack a twin, get numbers from size() on for their other direction.
+  /// Number of a directed edge: the edge of side h, leaving its tail (`from_tail`) or its head. A half-edge has its own number.
+  /// The reverse direction of a boundary edge, which has no twin, has a number from size() on.
   std::size_t directed(Half h, bool from_tail) const {
     const Half t = twin[h];
     if (t < 0) return from_tail ? static_cast<std::size_t>(h) : tail.size() + static_cast<std::size_t>(-1 - t);
@@ -97,13 +97,13 @@ struct HalfEdges {
   }
 };
 
-/// Flips edges of a triangulation until all are Delaunay [BS07].
-/// @param stack         of half-edges to begin with, the last first; of both halves of an edge, one
-/// @param cap           flips at the most: flipping ends by itself, but for rounding on degenerate input
-/// @param twin          of a half-edge
-/// @param is_delaunay   whether an edge is, on the boundary always
-/// @param flip          turns an edge of two faces; both its halves keep their places in them
-/// @return whether all are Delaunay
+/// Flips edges of a triangulation until all edges are Delaunay [BS07].
+/// @param stack        half-edges to start with, the last one first; one half-edge per edge
+/// @param cap          maximum number of flips. Flipping terminates except for rounding on degenerate input
+/// @param twin         twin(h): twin of a half-edge
+/// @param is_delaunay  is_delaunay(h): whether the edge is Delaunay; always true on the boundary
+/// @param flip         flip(h): flips an edge of two faces. Both half-edges keep their places in the faces
+/// @return whether all edges are Delaunay
 template <class H, class Twin, class IsDelaunay, class Flip>
 bool flip_to_delaunay(std::vector<H> stack, std::size_t cap, const Twin& twin, const IsDelaunay& is_delaunay,
                       const Flip& flip) {
@@ -118,8 +118,8 @@ bool flip_to_delaunay(std::vector<H> stack, std::size_t cap, const Twin& twin, c
   return stack.empty();
 }
 
-/// Moves the four outer sides of two faces to other half-edges. A side may be glued to another one of the four.
-/// @param mirrored  as of `HalfEdges`; may be empty
+/// Moves the four outer sides of two faces to other half-edges. Two of the four sides may be glued to each other.
+/// @param mirrored  as `HalfEdges::mirrored`; may be empty
 template <class H>
 void relink(const std::array<H, 4>& from, const std::array<H, 4>& to, std::span<H> twin,
             std::span<std::uint8_t> mirrored) {

@@ -1,5 +1,5 @@
 /// \file
-/// What can be mended in a mesh before a surface is built of it.
+/// Repairs of a mesh before a surface is built from it.
 ///
 /// \code
 /// const auto repaired = ahm::repair_mesh(points, faces, ahm::RepairOptions::all());
@@ -20,67 +20,68 @@
 
 namespace ahm {
 
-/// What is to be mended. Edges of more than two faces and pinched vertices are cut when the surface is built
-/// (`NonManifold::split`), and neighbouring faces are turned alike there in any case.
+/// The repairs to make. Edges of more than two faces and pinched vertices are not repaired but cut when the surface is built
+/// (`NonManifold::split`). Building also orients neighboring faces consistently in any case.
 struct RepairOptions {
-  /// Joins a vertex to the nearest one before it that stays and is at most this far away, world units, >= 0; 0: at equal
-  /// positions. Faces lose corners by it, and are dropped as by `drop_degenerate`.
+  /// Merges each vertex with the nearest earlier vertex that remains and is at most this far away, world units, >= 0. 0 merges
+  /// equal positions. Faces lose corners by merging; degenerate ones are dropped as by `drop_degenerate`.
   std::optional<double> weld;
-  /// A corner at the vertex of the corner before it is left out; faces that are left with fewer than three corners, or come
-  /// to a vertex twice, or have one whose position is not finite, are dropped.
+  /// Removes a corner at the vertex of the corner before. Drops faces that are left with fewer than three corners, visit a
+  /// vertex twice, or have a vertex whose position is not finite.
   bool drop_degenerate = false;
-  bool drop_duplicates = false;  ///< of faces with the same vertices the first remains
-  /// Turns faces over so that neighbours agree, as the majority of their part does, and closed parts look outwards. Parts
-  /// that cannot be oriented stay as they are.
+  bool drop_duplicates = false;  ///< keeps the first of several faces with the same vertices
+  /// Reverses faces so that neighbors agree with the majority of their part and closed parts face outward. Parts that cannot be
+  /// oriented stay unchanged.
   bool orient = false;
 
   bool any() const { return weld || drop_degenerate || drop_duplicates || orient; }
   static RepairOptions all() { return {0.0, true, true, true}; }
 };
 
-/// What was done.
+/// Counts of the repairs that were made.
 struct RepairCounts {
-  Index welded = 0;      ///< vertices joined to another one
+  Index welded = 0;      ///< vertices merged with another one
   Index shortened = 0;   ///< faces that lost corners and remain
-  Index degenerate = 0;  ///< faces dropped, likewise
-  Index not_finite = 0;  ///< faces dropped for a vertex that is not finite
-  Index duplicates = 0;  ///< faces dropped
-  Index turned = 0;      ///< faces turned over
+  Index degenerate = 0;  ///< degenerate faces dropped
+  Index not_finite = 0;  ///< faces dropped because of a vertex that is not finite
+  Index duplicates = 0;  ///< duplicate faces dropped
+  Index turned = 0;      ///< faces reversed
 
   bool any() const { return welded || shortened || degenerate || not_finite || duplicates || turned; }
   bool operator==(const RepairCounts&) const = default;
 };
 
-/// The faces that remain, in their order, of the same vertices.
+/// The remaining faces in the input's order, with the input's vertex numbers.
 struct RepairedMesh {
-  std::vector<Index> joined;         ///< per vertex: the one that stands for it, which has no greater number
+  std::vector<Index> joined;         ///< per vertex: the vertex that represents it; never a greater number
   std::vector<Offset> face_begin;    ///< faces + 1
-  std::vector<Index> face_vertices;  ///< those that stand for others, and those that were not joined
-  std::vector<Index> given_face;     ///< per face, its number as given; ascending
+  std::vector<Index> face_vertices;  ///< corners of the faces; only vertices that represent themselves
+  std::vector<Index> given_face;     ///< per face: its number in the input; ascending
   RepairCounts counts;
 
   FaceList faces() const { return {face_begin, face_vertices}; }
-  /// The number of a face that was given; none where it was dropped.
+  /// The new number of an input face; none where it was dropped.
   std::optional<Index> remaining(Index given) const;
 };
 
+/// Repairs the faces of a mesh.
 /// @param positions  n, world units
-/// @param faces      of vertices in [0, n); `begin` rises from 0 to the number of corners
-/// @throws InvalidGeometry (offsets; a vertex that there is not), InvalidArgument (weld not finite or negative)
+/// @param faces      faces of vertices in [0, n); `begin` rises from 0 to the number of corners
+/// @throws InvalidGeometry (offsets; a vertex index out of range), InvalidArgument (weld not finite or negative)
 RepairedMesh repair_mesh(std::span<const Vec3> positions, const FaceList& faces, const RepairOptions& options);
 
-/// Rows are the vertices given: those that were joined share the vertices of the one that stands for them. Faces are those
-/// that remained, with new numbers (`RepairedMesh::given_face`).
+/// A surface built from a repaired mesh. Its rows are the input vertices; merged rows share the vertices of the row that
+/// represents them. Its faces are the remaining ones, with new numbers (`RepairedMesh::given_face`).
 ///
-/// Its report: that of the surface built, then repair.welded, repair.shortened, repair.degenerate, repair.not_finite,
-/// repair.duplicates, repair.turned. Its warnings: welded, faces_shortened, degenerate_dropped, not_finite_dropped,
-/// duplicates_dropped, faces_turned (each with its number), then those of the surface built, where joined vertices do not
-/// count as unreferenced.
+/// The report is that of the built surface, then repair.welded, repair.shortened, repair.degenerate, repair.not_finite,
+/// repair.duplicates, repair.turned. The warnings are welded, faces_shortened, degenerate_dropped, not_finite_dropped,
+/// duplicates_dropped, faces_turned (each with its count), then those of the built surface. Merged vertices are not reported as
+/// unreferenced.
 class RepairedSurface final : public Surface {
  public:
-  /// @param built      of the repaired faces, with a row for every vertex given
-  /// @param positions  as given, one per row; those of `built` may differ where they are not finite
-  /// @throws InvalidArgument where the numbers of rows differ
+  /// @param built      surface of the repaired faces, with one row per input vertex
+  /// @param positions  input positions, one per row; those of `built` may differ where they are not finite
+  /// @throws InvalidArgument (different numbers of rows)
   RepairedSurface(std::unique_ptr<const Surface> built, std::vector<Vec3> positions, RepairedMesh mesh);
 
   const TangentGraph& graph() const& override { return built_->graph(); }

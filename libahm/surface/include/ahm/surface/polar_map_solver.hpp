@@ -1,11 +1,11 @@
 /// \file
-/// Log maps in geodesic polar coordinates: the length of the shortest path to each vertex times the direction in which it leaves
-/// the source.
+/// Log maps in geodesic polar coordinates: the length of the shortest path to each vertex times the direction of that
+/// path at the source.
 ///
 /// \code
 /// const ahm::PolarMapSolver solver(surface);                 // a mesh, a cloud, a grid: nothing is factored
 /// ahm::LogMap map = solver.log_map(ahm::Row{42});
-/// ahm::RowLogMap rows = surface.to_rows(map);                // as of a map by heat
+/// ahm::RowLogMap rows = surface.to_rows(map);                // the same as for heat maps
 /// \endcode
 #pragma once
 
@@ -20,25 +20,25 @@
 namespace ahm {
 
 struct PolarSolverOptions {
-  /// Number of exact windows around the source per map; 0: none, the front starts at the source. Not set: 8 per vertex and no fewer
-  /// than 131,072, which take about as long as the front.
+  /// Number of exact windows around the source per map. 0: none; the front starts at the source. Default: 8 per vertex, at
+  /// least 131,072, which take about as long as the front.
   std::optional<Offset> windows = {};
-  unsigned threads = 0;  ///< for the one-rings; 0: one per core. No result depends on it
+  unsigned threads = 0;  ///< threads that build the one-rings; 0: one per core. No result depends on it
 };
 
-/// A surface prepared for polar maps: its one-rings and, where it has any, its flat triangles. Immutable; all members may be
-/// called from many threads at once. Refers to the surface or graph, which has to stay where it is.
+/// A surface prepared for polar maps: its one-rings and, if it has any, its flat triangles. Immutable; all members may be
+/// called from many threads at once. Refers to the surface or graph, which must not move or end before the solver.
 ///
-/// Exact windows around the source (`ExactGeodesics`) compute distances and directions there. A front carries them on
-/// (`Wavefront`). Without flat triangles (grids, faces without area), and where windows get lost in needles, the
-/// front starts at the source; `LogMap::error_estimate` is larger then. On clouds windows cross triangles that are chosen from the
-/// local triangulations; the error estimate there is that of the difference to a front from the source.
+/// Exact windows (`ExactGeodesics`) compute distances and directions around the source. A front (`Wavefront`) continues from
+/// there. The front starts at the source where there are no flat triangles (grids, faces without area), and where windows get
+/// lost in needle triangles. `LogMap::error_estimate` is larger then. On clouds, windows cross triangles selected from the
+/// local triangulations. The error estimate there is the difference to a front from the source.
 class PolarMapSolver {
  public:
   /// @throws ResourceExhausted
   explicit PolarMapSolver(const Surface& surface, const PolarSolverOptions& options = {});
   explicit PolarMapSolver(Surface&&, const PolarSolverOptions& = {}) = delete;
-  /// For a graph of dimension 2 that belongs to no surface: its fronts start at the source.
+  /// For a graph of dimension 2 without a surface. Its fronts start at the source.
   /// @throws InvalidArgument (dimension), ResourceExhausted
   explicit PolarMapSolver(const TangentGraph& graph, const PolarSolverOptions& options = {});
   explicit PolarMapSolver(TangentGraph&&, const PolarSolverOptions& = {}) = delete;
@@ -46,14 +46,14 @@ class PolarMapSolver {
   const TangentGraph& graph() const noexcept { return *graph_; }
 
   /// The map from a point of the surface.
-  /// @param u_axis  as of `Surface::source`
+  /// @param u_axis  as in `Surface::source`
   /// @throws InvalidArgument (a solver for a graph; as `Surface::source`, `polar_map`), ResourceExhausted, Cancelled
   LogMap log_map(const SurfacePoint& source, const std::optional<Vec3>& u_axis = {},
                  const PolarMapOptions& options = {}) const;
-  /// The map from a vertex of the graph, in the axes of its frame. @throws as above
+  /// The map from a vertex of the graph, in the axes of its frame. @throws as `log_map` of a point
   LogMap log_map(Vertex source, const PolarMapOptions& options = {}) const;
-  /// The map from a source in any form, a curve excepted: without windows. Of several points the nearest counts
-  /// (`LogMap::nearest`). @throws as above
+  /// The map from a source of any form except a curve, without windows. With several source points each vertex uses the nearest
+  /// one (`LogMap::nearest`). @throws as `log_map` of a point
   LogMap log_map(const Source& source, const PolarMapOptions& options = {}) const;
 
  private:
@@ -64,14 +64,14 @@ class PolarMapSolver {
   const Surface* surface_ = nullptr;
   std::shared_ptr<const Wavefront::OneRings> stars_;
   std::unique_ptr<const CsrGraph>
-      sheet_;  ///< the edges of triangles that were chosen, as of clouds; null: the graph's own serve
+      sheet_;  ///< edges of the selected triangles, for clouds; null: those of the graph are used
   std::shared_ptr<const Wavefront::OneRings> sheet_stars_;
-  std::optional<ExactGeodesics> geodesics_;  ///< none: no flat triangles, or no windows wanted
+  std::optional<ExactGeodesics> geodesics_;  ///< none: no flat triangles, or windows disabled
   Offset windows_ = 0;
 };
 
-/// The method for log maps on a graph that belongs to no surface (else `Surface::suggested_method`): polar on Delaunay
-/// triangulations, else heat.
+/// The method for log maps on a graph without a surface (else `Surface::suggested_method`): polar on Delaunay triangulations,
+/// otherwise heat.
 Method choose_method(const TangentGraph& graph);
 
 }  // namespace ahm

@@ -1,5 +1,5 @@
 /// \file
-/// Local maps whose neighbours are rows of the input.
+/// Local maps whose neighbors are rows of the input.
 ///
 /// \code
 /// const ahm::Vertex here = surface.vertex(ahm::Row{42});
@@ -17,15 +17,15 @@ namespace ahm {
 
 using RowLocalMaps = LocalMapsOf<Row>;
 
-/// `local_maps` with rows for neighbours (the first ones of their vertices). Vertices that the input does not have, as inside
-/// refined polygons, are left out; `LocalMapOptions::nearest` counts those that are left. Distances are no shorter than the
-/// straight line, as in `RowLogMap`.
+/// `local_maps` with rows as neighbors: each vertex is replaced by its first row. Vertices without a row, as inside refined
+/// polygons, are omitted; `LocalMapOptions::nearest` counts the remaining ones. Distances are at least the straight-line
+/// distance, as in `RowLogMap`.
 /// @throws as `local_maps`
 RowLocalMaps row_local_maps(const Surface& surface, std::span<const Vertex> sources, const LocalMapOptions& options);
-/// Of any sources: points in faces, curves.
+/// Local maps of any sources: points in faces, curves.
 RowLocalMaps row_local_maps(const Surface& surface, std::span<const Source> sources, const LocalMapOptions& options);
 
-/// Of every row: source s is row s. Rows without a vertex have no entries.
+/// Local maps of every row: source s is row s. Rows without a vertex have no entries.
 RowLocalMaps row_local_maps(const Surface& surface, const LocalMapOptions& options);
 
 }  // namespace ahm

@@ -1,5 +1,5 @@
 /// \file
-/// A point of a surface, as a user names it: in terms of the input, never of the graph.
+/// A point of a surface in terms of the input (rows, faces, edges), never of the graph.
 ///
 /// \code
 /// ahm::SurfacePoint at_row = ahm::Row{42};                                 // row 42 of the input
@@ -25,14 +25,14 @@ struct EdgePoint {
 /// A point of a face of the input.
 struct FacePoint {
   Index face = 0;
-  /// Weights of the face's corners in the order given: one per corner, >= 0, sum 1 (each to 1e-9; made exact).
+  /// Weights of the corners in the input's order: one per corner, >= 0, sum 1 (each to 1e-9; made exact).
   std::vector<double> barycentric;
 };
 
-/// A point of the tangent plane of a row, near it: where a surface has no faces.
+/// A point of the tangent plane of a row, near the row. For surfaces without faces.
 struct TangentPoint {
   Row row;
-  Vec3 position{};  ///< world units; its part along the normal does not count
+  Vec3 position{};  ///< world units; the component along the normal is ignored
 };
 
 using SurfacePoint = std::variant<Row, EdgePoint, FacePoint, TangentPoint>;
@@ -40,8 +40,8 @@ using SurfacePoint = std::variant<Row, EdgePoint, FacePoint, TangentPoint>;
 /// The point of a surface nearest to a position in space.
 struct ClosestPoint {
   SurfacePoint point;
-  Vec3 position{};      ///< of the point, world units
-  double distance = 0;  ///< in space, world units
+  Vec3 position{};      ///< position of `point`, world units
+  double distance = 0;  ///< distance in space from the query, world units
 };
 
 }  // namespace ahm

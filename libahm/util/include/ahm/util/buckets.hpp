@@ -1,5 +1,5 @@
 /// \file
-/// Things by a number that each of them has.
+/// Items grouped by an integer key (counting sort).
 #pragma once
 
 #include <algorithm>
@@ -12,25 +12,25 @@
 
 namespace ahm::detail {
 
-/// Calls body(from, to) on a few ranges of [0, keys), as many as there are threads: each looks at all things, and takes those whose
-/// key is in its range. So what lies in one range comes in order, and nobody waits.
+/// Splits [0, keys) into ranges, at most one per thread, and calls body(from, to) for each. A body visits all items and processes
+/// those whose key is in its range. So each range is processed in order, and threads need no locks.
 template <class Body>
 void for_key_ranges(Index keys, unsigned threads, const Body& body) {
-  constexpr Offset most = 4;  // looking takes time, too
+  constexpr Offset most = 4;  // each range costs one pass over all items
   const Offset ranges = std::min<Offset>(thread_count(threads), most);
   parallel_chunks(keys, std::max<Offset>(1, (keys + ranges - 1) / ranges), threads, body);
 }
 
-/// The places of keys in an array that holds all things of key 0, then those of key 1, ...
-/// @param sizes  how many there are of key k: at k + 1
+/// Begin of each key in an array that is sorted by key.
+/// @param sizes  entry k + 1: number of items with key k
 inline std::vector<Offset> starts_of(std::vector<Offset> sizes) {
   for (std::size_t k = 1; k < sizes.size(); ++k) sizes[k] += sizes[k - 1];
   return sizes;
 }
 
-/// The numbers of things, by their keys, and ascending.
+/// Item numbers grouped by key, ascending within each key.
 struct Buckets {
-  std::vector<Offset> begin;  ///< keys + 1
+  std::vector<Offset> begin;  ///< keys + 1 positions in `members`
   UnsetVector<Offset> members;
 
   std::span<const Offset> of(Index key) const {
@@ -39,7 +39,8 @@ struct Buckets {
   }
 };
 
-/// @param key  of thing k, in [0, keys)
+/// Groups the items 0 to count - 1 by key.
+/// @param key  key(k): key of item k, in [0, keys)
 template <class Key>
 Buckets buckets_of(Offset count, Index keys, unsigned threads, const Key& key) {
   Buckets result{std::vector<Offset>(static_cast<std::size_t>(keys) + 1, 0), {}};

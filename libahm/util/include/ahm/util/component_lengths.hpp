@@ -8,7 +8,7 @@
 
 namespace ahm::detail {
 
-/// Adds edges up, component by component.
+/// Computes the mean edge length of each component from edges added one at a time.
 class ComponentLengths {
  public:
   explicit ComponentLengths(std::size_t vertices) : parts_(vertices), vertices_(vertices) {}
@@ -18,7 +18,7 @@ class ComponentLengths {
     edges_.push_back({a, length});
   }
 
-  /// Per vertex, the mean over the edges of its component; empty where there is only one component.
+  /// Mean edge length of each vertex's component; empty if there is only one component.
   std::vector<double> means() {
     std::vector<double> sum(vertices_, 0.0), count(vertices_, 0.0);
     for (const Edge& e : edges_) {

@@ -1,5 +1,5 @@
 /// \file
-/// Sets of numbers joined step by step. Not part of the public interface.
+/// Union-find. Not part of the public interface.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace ahm::detail {
 
-/// A set goes by its smallest member.
+/// Disjoint sets of the numbers 0 to n - 1. The root of a set is its smallest member.
 class DisjointSets {
  public:
   explicit DisjointSets(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0); }

@@ -1,5 +1,5 @@
 /// \file
-/// Running out of memory, as an error of ours. Not part of the public interface.
+/// Converts out-of-memory errors to `ResourceExhausted`. Not part of the public interface.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace ahm::detail {
 
-/// Returns work(); throws `ResourceExhausted` "out of memory while `doing`" where memory does not suffice.
+/// Returns work(). @throws ResourceExhausted ("out of memory while `doing`")
 template <class Work>
 auto with_memory_check(const std::string& doing, const Work& work) try {
   return work();
@@ -21,7 +21,7 @@ auto with_memory_check(const std::string& doing, const Work& work) try {
   throw ResourceExhausted("out of memory while " + doing);
 }
 
-/// Asks for memory and gives it back: before what ends the process, or writes to null, where there is none.
+/// Allocates and frees memory, to test that it is available. Call it before code that crashes when an allocation fails.
 /// @throws std::bad_alloc
 inline void require_memory(std::size_t bytes) { ::operator delete(::operator new(bytes)); }
 

@@ -1,5 +1,5 @@
 /// \file
-/// Parts of libahm that are loaded when they are first needed, since what they stand on (PCL, and with it VTK) is large.
+/// Modules: parts of libahm that are loaded on first use, because they depend on large libraries (PCL, which loads VTK).
 #pragma once
 
 #include <dlfcn.h>
@@ -11,17 +11,16 @@
 
 namespace ahm {
 
-/// What a module offers under a name, which is looked for beside the program or library that has this code (lib/ahm, as built and as
-/// installed), where it was to be installed (`AHM_MODULE_DIR`), and where the system looks for libraries. Loaded once, never
-/// unloaded.
-/// @param error  why it was not found
-/// @return null where it was not found
+/// Finds a symbol of a module. Searches the folder lib/ahm relative to this program or library (in the build tree and installed),
+/// then the install folder `AHM_MODULE_DIR`, then the library path of the system. Modules are never unloaded.
+/// @param error  out: why the symbol was not found
+/// @return null if the symbol was not found
 inline void* module_symbol(const std::string& module, const char* symbol, std::string& error) {
   static const char here = 0;
   Dl_info image{};
   std::string folder;
   if (dladdr(&here, &image) != 0 && image.dli_fname != nullptr) folder = image.dli_fname;
-  // A program that was found through PATH goes by the word it was called with.
+  // For a program that the shell found through PATH, dladdr returns the command name without a folder.
   if (folder.find('/') == std::string::npos) {
     char path[4096];
     const ssize_t length = readlink("/proc/self/exe", path, sizeof path);
@@ -29,7 +28,7 @@ inline void* module_symbol(const std::string& module, const char* symbol, std::s
   }
   folder.erase(folder.find_last_of('/') + 1);
   const std::string file = "ahm_" + module + ".so";
-  // From bin/ahm, lib/libahm_io.so and python/ahm/_core.so.
+  // The first three folders are relative to bin/ahm, lib/libahm_io.so and python/ahm/_core.so.
   for (const std::string& place :
        {folder + "../" AHM_MODULE_LIBDIR "/ahm/", folder + "ahm/", folder + "../../" AHM_MODULE_LIBDIR "/ahm/",
         std::string(AHM_MODULE_DIR "/"), std::string()}) {
@@ -43,9 +42,9 @@ inline void* module_symbol(const std::string& module, const char* symbol, std::s
   return nullptr;
 }
 
-/// The table of functions that the module `module` offers as `ahm_MODULE`.
-/// @param wanted  begins the error's text: who needs it
-/// @throws IoError where the module cannot be loaded, ResourceExhausted where it or what it stands on has no room in memory
+/// The function table that the module exports as `ahm_MODULE`. Loads the module on the first call.
+/// @param wanted  beginning of the error message: what needs the module
+/// @throws IoError (the module cannot be loaded), ResourceExhausted (no memory for the module or its dependencies)
 template <class Functions>
 const Functions& module_functions(const std::string& module, const std::string& wanted) {
   static std::string error;

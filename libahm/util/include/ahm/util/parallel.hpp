@@ -1,5 +1,5 @@
 /// \file
-/// Loops over threads, for the library and its backends. Not part of the public interface.
+/// Parallel loops for the library and its backends. Not part of the public interface.
 #pragma once
 
 #include <algorithm>
@@ -14,13 +14,14 @@
 
 namespace ahm::detail {
 
-/// The number of threads asked for; 0 means one per core.
+/// The number of threads to use.
+/// @param requested  0: one per core
 inline unsigned thread_count(unsigned requested) {
   return requested > 0 ? requested : std::max(1u, std::thread::hardware_concurrency());
 }
 
-/// Calls body(begin, end) on consecutive chunks of [0, n), each at most `chunk` long. Chunks do not depend on the
-/// number of threads. An exception stops the loop; of several that of the first chunk is rethrown, the same on any number of threads.
+/// Calls body(begin, end) on consecutive chunks of [0, n), each at most `chunk` long. Chunks do not depend on the number of threads.
+/// An exception stops the loop. If several chunks throw, the exception of the first chunk is rethrown, for any number of threads.
 template <class Body>
 void parallel_chunks(Offset n, Offset chunk, unsigned threads, const Body& body) {
   const Offset chunks = (n + chunk - 1) / chunk;
@@ -46,14 +47,14 @@ void parallel_chunks(Offset n, Offset chunk, unsigned threads, const Body& body)
     try {
       for (Offset t = 1; t < workers; ++t) pool.emplace_back(work);
     } catch (const std::system_error&) {
-      // No more threads to be had: those there are, and this one, do the work.
+      // The system cannot start more threads. The existing ones and the calling thread do the work.
     }
     work();
   }
   if (error) std::rethrow_exception(error);
 }
 
-/// Calls body(i) for every i of [0, n), in chunks shared out over the threads.
+/// Calls body(i) for every i in [0, n), in chunks on several threads.
 template <class Body>
 void for_each_index(std::size_t n, unsigned threads, const Body& body) {
   parallel_chunks(static_cast<Offset>(n), 1 << 14, threads, [&](Offset begin, Offset end) {
@@ -61,7 +62,8 @@ void for_each_index(std::size_t n, unsigned threads, const Body& body) {
   });
 }
 
-/// Sorts by a strict total order, of which no two values are equal.
+/// Sorts values on several threads.
+/// @param less  strict total order; no two values may be equivalent
 template <class T, class Less>
 void parallel_sort(std::vector<T>& values, unsigned threads, const Less& less) {
   const auto n = static_cast<Offset>(values.size());
@@ -74,8 +76,8 @@ void parallel_sort(std::vector<T>& values, unsigned threads, const Less& less) {
     });
 }
 
-/// Runs two tasks at once on two threads or more (0: one per core), else one after the other; the first one's exception is rethrown when
-/// both ended, or else the second's.
+/// Runs two tasks, in parallel if there are two threads or more (0: one per core). Rethrows the exception of `first`, or else that of
+/// `second`, after both have ended.
 template <class First, class Second>
 void run_both(unsigned threads, const First& first, const Second& second) {
   parallel_chunks(2, 1, threads, [&](Offset begin, Offset) { begin == 0 ? first() : second(); });

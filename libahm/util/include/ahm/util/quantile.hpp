@@ -1,5 +1,5 @@
 /// \file
-/// Values in the middle, and at other places of the order. Not part of the public interface.
+/// Medians and other order statistics. Not part of the public interface.
 #pragma once
 
 #include <algorithm>
@@ -15,14 +15,15 @@
 
 namespace ahm::detail {
 
-/// The value that would be at place `at` if the values, none of them NaN, were sorted; they are reordered.
+/// The value at position `at` of the sorted values. Reorders the values.
+/// @param values  without NaN
 inline double nth_value(std::span<double> values, std::size_t at) {
   const auto place = values.begin() + static_cast<std::ptrdiff_t>(at);
   std::nth_element(values.begin(), place, values.end());
   return *place;
 }
 
-/// The same; of many values most are told to be smaller or larger by two of a sample, on several threads.
+/// As `nth_value`, on several threads. For many values, two quantiles of a sample exclude most values as too small or too large.
 inline double value_at(std::span<double> values, std::size_t at, unsigned threads = 1) {
   constexpr std::size_t few = 1 << 15, looked_at = 1 << 10, around = looked_at / 16;
   constexpr Offset chunk = 1 << 16;
@@ -52,7 +53,7 @@ inline double value_at(std::span<double> values, std::size_t at, unsigned thread
     below += smaller;
     within += some;
   });
-  if (at < below || at >= below + within) return nth_value(values, at);  // the sample has misled
+  if (at < below || at >= below + within) return nth_value(values, at);  // the sample was not representative
   if (low == high) return low;
   std::vector<double> all;
   all.reserve(within);
@@ -60,7 +61,7 @@ inline double value_at(std::span<double> values, std::size_t at, unsigned thread
   return nth_value(all, at - below);
 }
 
-/// Of two in the middle the larger one; of at least one value.
+/// The median of at least one value; the larger of the two middle values if their number is even. May reorder the values.
 inline double median(std::span<double> values, unsigned threads = 1) {
   return value_at(values, values.size() / 2, threads);
 }

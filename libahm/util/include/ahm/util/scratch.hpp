@@ -1,5 +1,5 @@
 /// \file
-/// Space for a few numbers: on the stack for d x d <= 9.
+/// A small temporary array, on the stack for up to 9 numbers (d x d for d <= 3).
 #pragma once
 
 #include <array>

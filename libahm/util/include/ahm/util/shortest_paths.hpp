@@ -1,5 +1,5 @@
 /// \file
-/// Dijkstra's algorithm, once for all that grows along edges.
+/// Dijkstra's algorithm.
 #pragma once
 
 #include <functional>
@@ -11,16 +11,16 @@
 
 namespace ahm {
 
-/// The queue of Dijkstra's algorithm over `known`, the best distance so far by vertex, which the caller provides and
-/// clears: anything with known[Index] -> Distance&.
+/// The priority queue of Dijkstra's algorithm. The caller provides and clears `known`, the smallest distance so far of each vertex.
+/// @tparam Known  any type with known[Index] -> Distance&
 template <class Distance, class Known>
 class ShortestPaths {
  public:
-  /// @param unset  what `known` holds where nothing is known yet; no vertex is reached at that distance
+  /// @param unset  value of `known` for vertices without a distance; not a valid distance
   ShortestPaths(Known& known, Distance unset) : known_(known), unset_(unset) {}
 
-  /// Keeps the distance if it is the least so far.
-  /// @return whether it is
+  /// Stores and queues the distance if it is smaller than the current distance of the vertex.
+  /// @return whether it was stored
   bool offer(Index vertex, Distance distance) {
     Distance& known = known_[vertex];
     if (distance == unset_ || (known != unset_ && !(distance < known))) return false;
@@ -28,12 +28,13 @@ class ShortestPaths {
     return true;
   }
 
-  /// The least distance of those that wait; some must.
+  /// The smallest queued distance. The queue must not be empty.
   Distance least() const { return queue_.top().first; }
   bool empty() const { return queue_.empty(); }
 
-  /// Calls settle(vertex, distance) in order of distance, equal ones by number, while it offers more. A distance may come
-  /// twice where it was offered so; one that was bettered does not come.
+  /// Calls settle(vertex, distance) in order of distance until the queue is empty; `settle` may call `offer`. Equal distances are
+  /// ordered by vertex number. Distances that were replaced by smaller ones are skipped. A distance that was queued twice may be
+  /// settled twice.
   template <class Settle>
   void run(const Settle& settle) {
     while (!queue_.empty()) {

@@ -1,5 +1,5 @@
 /// \file
-/// Vectors of a few numbers.
+/// Arithmetic on vectors of any dimension.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 namespace ahm {
 
-/// An index among sizes: before a product that an int might not hold.
+/// Converts an integer to std::size_t, before a product that could overflow an int.
 template <class Integer>
 constexpr std::size_t to_size(Integer i) {
   return static_cast<std::size_t>(i);
@@ -25,13 +25,13 @@ inline double dot(std::span<const double> a, std::span<const double> b) {
   return sum;
 }
 
-/// The power of two next below |x|, 1 for 0: in units of it squares of lengths near x neither overflow nor underflow, and
-/// no bit of them changes.
+/// The largest power of two that is at most |x|; 1 for 0. Lengths near x, divided by it, can be squared without overflow or underflow.
+/// The division itself is exact.
 inline double power_of_two_below(double x) {
   return x == 0 ? 1.0 : std::ldexp(1.0, std::clamp(std::ilogb(x), -1022, 1022));
 }
 
-/// Euclidean length without overflow; of vectors times a power of two the same bits.
+/// Euclidean length without overflow or underflow. Scaling the vector by a power of two scales the result exactly.
 inline double length(std::span<const double> v) {
   const double squared = dot(v, v);
   if ((squared > 1e-280 && squared < 1e280) || std::isnan(squared)) return std::sqrt(squared);

@@ -1,5 +1,5 @@
 /// \file
-/// Seconds of wall-clock time. Not part of the public interface.
+/// Measures wall-clock time. Not part of the public interface.
 #pragma once
 
 #include <chrono>
@@ -9,7 +9,7 @@ namespace ahm::detail {
 
 class Stopwatch {
  public:
-  /// Seconds since the last lap, or since the start.
+  /// Seconds since the previous call, or since construction.
   double lap() {
     const auto now = std::chrono::steady_clock::now();
     return std::chrono::duration<double>(now - std::exchange(last_, now)).count();

@@ -1,5 +1,5 @@
 /// \file
-/// Numbers in messages. Not part of the public interface.
+/// Formats numbers for messages. Not part of the public interface.
 #pragma once
 
 #include <cmath>
@@ -15,7 +15,7 @@ inline std::string number(double value) {
   return buffer;
 }
 
-/// "1.23 GB"
+/// Formats a number of bytes as "1.23 GB".
 inline std::string gigabytes(double bytes) { return number(std::round(bytes / 1e7) / 100) + " GB"; }
 
 }  // namespace ahm::detail

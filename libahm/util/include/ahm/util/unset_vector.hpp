@@ -1,5 +1,5 @@
 /// \file
-/// Arrays that have no values until they are written.
+/// Vectors whose new elements are not initialized.
 #pragma once
 
 #include <memory>
@@ -10,13 +10,13 @@
 
 namespace ahm::detail {
 
-/// Leaves what it makes room for as it is. Whoever writes a page of a large array first waits until the system has cleared it:
-/// so it is left to the threads that fill it.
+/// An allocator that default-initializes new elements, which leaves numbers unset. The system clears a page of memory on its first
+/// write, so the threads that fill a large array share this cost.
 template <class T>
 struct LeaveUnset : std::allocator<T> {
   static_assert(std::is_trivially_destructible_v<T>);
   template <class U>
-  struct rebind {  // NOLINT(readability-identifier-naming): the name of the standard
+  struct rebind {  // NOLINT(readability-identifier-naming): the name in the standard
     using other = LeaveUnset<U>;
   };
   LeaveUnset() = default;
@@ -32,7 +32,7 @@ struct LeaveUnset : std::allocator<T> {
   }
 };
 
-/// `UnsetVector<T>(n)` and `resize(n)` write nothing.
+/// A vector whose constructor `UnsetVector<T>(n)` and `resize(n)` do not initialize elements.
 template <class T>
 using UnsetVector = std::vector<T, LeaveUnset<T>>;
 

@@ -1,5 +1,5 @@
 /// \file
-/// Arithmetic on vectors of the plane and of space. Not part of the public interface.
+/// Arithmetic on 2D and 3D vectors. Not part of the public interface.
 #pragma once
 
 #include <algorithm>
@@ -51,7 +51,7 @@ inline Vec3 cross(const Vec3& a, const Vec3& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-/// Length; may overflow where `length` does not.
+/// Euclidean length. May overflow or underflow; `length` does not.
 template <std::size_t d>
 double norm(const std::array<double, d>& a) {
   return std::sqrt(dot(a, a));
@@ -62,7 +62,7 @@ std::array<double, d> normalized(const std::array<double, d>& a) {
   return 1.0 / norm(a) * a;
 }
 
-/// The largest |coordinate|.
+/// The largest absolute value of a coordinate.
 template <std::size_t d>
 double largest(const std::array<double, d>& a) {
   double result = 0;
@@ -72,7 +72,7 @@ double largest(const std::array<double, d>& a) {
 
 inline bool is_finite(const Vec3& p) { return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]); }
 
-/// Without overflow.
+/// Euclidean distance without overflow.
 inline double distance(const Vec3& a, const Vec3& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
 
 }  // namespace ahm

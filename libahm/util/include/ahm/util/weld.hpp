@@ -1,5 +1,5 @@
 /// \file
-/// One number for points at the same place. Not part of the public interface.
+/// Merges points at the same position. Not part of the public interface.
 #pragma once
 
 #include <algorithm>
@@ -17,16 +17,17 @@
 
 namespace ahm::detail {
 
+/// Merged points, numbered in the order of their first input points.
 struct Welded {
-  std::vector<Index> number;  ///< per point
-  std::vector<Index> first;   ///< per number: the first point that has it, ascending
+  std::vector<Index> number;  ///< merged point of each input point
+  std::vector<Index> first;   ///< first input point of each merged point, ascending
 };
 
-/// Gives points at exactly equal positions one number. NaN equals nothing, itself included.
+/// Merges points with exactly equal positions. Points with a NaN coordinate are never merged.
 inline Welded weld(std::span<const Vec3> points) {
   std::vector<Index> order(points.size());
   std::iota(order.begin(), order.end(), 0);
-  // NaN is put last to keep the order strict.
+  // Points with NaN go last: they have no place in a strict weak order.
   const auto is_number = [&](Index p) {
     return std::ranges::none_of(points[p], [](double x) { return std::isnan(x); });
   };
@@ -53,19 +54,19 @@ struct CellHash {
   }
 };
 
-/// Gives a point the number of the nearest point before it that has one of its own and is at most `reach` > 0 away, of
-/// equally near ones the first. Numbers never lie farther apart than that from their points, however long a chain of points
-/// is. A point that is not finite equals nothing, itself included.
+/// Merges each point into the nearest earlier merged point within `reach` > 0, or else makes it a new merged point. Ties go to the
+/// first one. Distances are measured to the first input point of a merged point, so chains of close points do not collapse into one.
+/// Points that are not finite are never merged.
 inline Welded weld(std::span<const Vec3> points, double reach) {
   Welded result;
-  std::unordered_map<Vec3, Index, CellHash> last_in;  // the numbers of a cell as wide as the reach, linked
-  std::vector<Index> before;
+  std::unordered_map<Vec3, Index, CellHash> last_in;  // last merged point in each cell of width `reach`
+  std::vector<Index> before;                          // previous merged point in the same cell; -1: none
   const auto cell_of = [&](const Vec3& p, const Vec3& step) {
     Vec3 cell;
     for (std::size_t a = 0; a < 3; ++a) {
       const double number = std::floor(p[a] / reach);
-      // Where there are more cells than numbers, only equal coordinates lie within the reach.
-      cell[a] = (std::isfinite(number) ? number + step[a] : p[a]) + 0.0;  // no -0
+      // If p / reach overflows, only points with the same coordinate are within reach.
+      cell[a] = (std::isfinite(number) ? number + step[a] : p[a]) + 0.0;  // turns -0 into 0
     }
     return cell;
   };

@@ -31,15 +31,15 @@ struct ReducedCloud {
 ///         InvalidGeometry (a coordinate is not finite)
 ReducedCloud voxel_grid(std::span<const Vec3> points, std::span<const Vec3> normals, double size);
 
-/// Removes outliers with `pcl::StatisticalOutlierRemoval`. Keeps the points whose mean distance to `mean_k` neighbors is at most the
-/// mean of these distances over the cloud plus `stddev_mul` standard deviations.
+/// Removes outliers with `pcl::StatisticalOutlierRemoval`. Keeps the points whose mean distance to `mean_k` neighbors is at
+/// most the mean of these distances over the cloud plus `stddev_mul` standard deviations.
 /// @param mean_k  >= 1; clamped to n - 1
 /// @return indices of the points kept, ascending
 /// @throws InvalidArgument (mean_k, stddev_mul), InvalidGeometry (a coordinate is not finite)
 std::vector<Index> outlier_removal(std::span<const Vec3> points, int mean_k = 16, double stddev_mul = 2.0);
 
-/// Estimates unit normals with `pcl::NormalEstimationOMP`: the direction of least variance of the k nearest points, with arbitrary
-/// sign.
+/// Estimates unit normals with `pcl::NormalEstimationOMP`: the direction of least variance of the k nearest points, with
+/// arbitrary sign.
 /// @param k        >= 3; clamped to n
 /// @param threads  0: one per core
 /// @return one normal per point, NaN where PCL finds none

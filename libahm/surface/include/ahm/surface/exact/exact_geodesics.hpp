@@ -1,12 +1,12 @@
 /// \file
-/// Exact geodesics in terms of a surface's input: log maps that stand beside those of heat, shortest paths, and straight
-/// lines. Exact means: of the flat triangles, up to rounding.
+/// Exact geodesics in terms of a surface's input: log maps like those of the heat method, shortest paths, and straightest
+/// geodesics. They are exact on the flat triangles, up to rounding.
 ///
 /// \code
 /// auto surface = ahm::trimesh::TriangleMeshSurface::build(positions, faces);
 /// const ahm::ExactGeodesics geodesics(surface);
 /// ahm::LogMap map = geodesics.log_map(ahm::Row{42});
-/// ahm::RowLogMap rows = surface.to_rows(map);                     // as from a map by heat
+/// ahm::RowLogMap rows = surface.to_rows(map);                     // the same as for heat maps
 /// ahm::exact::GeodesicPath path = geodesics.path(std::array<ahm::SurfacePoint, 2>{ahm::Row{3}, ahm::Row{42}});
 /// for (const auto& point : path.points) use(geodesics.position(point));
 /// \endcode
@@ -27,74 +27,74 @@
 
 namespace ahm {
 
-/// Of all that is made by exact maps.
+/// Options of exact maps and of everything that uses them.
 struct ExactMapOptions {
-  /// Vertices farther than this get `Status::beyond_radius`, and the work ends there. World units; > 0.
+  /// Vertices farther than this get `Status::beyond_radius`, and the propagation ends there. World units; > 0.
   double radius = std::numeric_limits<double>::infinity();
-  /// How far distances may be off, relative to the true ones, in [0, 0.1]. 0: exact. Above, nearly linear in the number
-  /// of vertices (`exact::ExactOptions`); directions may be off by about sqrt(2 tolerance), as those of paths that much
-  /// longer are, and are any of those of two ways that differ by less.
+  /// Maximum relative error of distances, in [0, 0.1]. 0: exact. Above 0, the time is nearly linear in the number of vertices
+  /// (`exact::ExactOptions`). Directions may be off by about sqrt(2 tolerance), as those of paths that much longer are. Where
+  /// two paths differ by less than the tolerance, the direction may be that of either.
   double tolerance = 0;
-  Offset max_windows = 0;  ///< as of `exact::ExactOptions`
+  Offset max_windows = 0;  ///< as in `exact::ExactOptions`
   bool frames = false;     ///< fill `LogMap::frames`
   Progress progress;
-  unsigned threads = 0;  ///< of what makes several maps; 0: one per core
+  unsigned threads = 0;  ///< threads of functions that compute several maps; 0: one per core
 };
 
-/// One of several sources of an exact map; of a curve, one of its points.
+/// One of several sources of an exact map, or one point of a curve.
 struct ExactSource {
   SurfacePoint point;
-  std::optional<Vec3> u_axis = {};  ///< as of `Surface::source`
+  std::optional<Vec3> u_axis = {};  ///< as in `Surface::source`
   Vec2 position{};                  ///< coordinates of the point, world units
-  double angle = 0;                 ///< of the u axis in the plane of coordinates, radians
-  bool mirrored = false;            ///< v to the right of the u axis
+  double angle = 0;                 ///< angle of the u axis in the plane of coordinates, radians
+  bool mirrored = false;            ///< v is to the right of the u axis
 };
 
-/// A map from several sources, and which of them each vertex is nearest to; -1 where the status is not ok.
+/// A map from several sources, with the number of the source nearest to each vertex; -1 where the status is not ok.
 struct LabelledLogMap {
   LogMap map;
   std::vector<Index> labels;
 };
 
-/// A surface laid out in triangles, once for many maps and paths. Immutable; all members may be called from many threads at
-/// once. Refers to the surface, which has to stay where it is.
+/// A surface laid out in triangles, prepared for many maps and paths. Immutable; all members may be called from many threads at
+/// once. Refers to the surface, which must not move.
 class ExactGeodesics {
  public:
   /// Time and memory linear in the number of faces.
   /// @throws as `Surface::flat_triangles`
   explicit ExactGeodesics(const Surface& surface);
   explicit ExactGeodesics(Surface&&) = delete;
-  /// Over other triangles than the faces: `Surface::flat_approximation`, to which the maps are exact.
+  /// Uses other triangles than the faces: `Surface::flat_approximation`. The maps are exact on these triangles.
   ExactGeodesics(const Surface& surface, FlatTriangles triangles);
 
   const Surface& surface() const noexcept { return *surface_; }
   const FlatTriangles& triangles() const noexcept { return flat_; }
 
-  /// The log map from a point, with the axes, statuses and vertices that a map by heat has. `LogMap::method` is exact;
-  /// its `map_quality` is low where neighbours jump, at the cut locus, and it has no error estimate. Its frames turn the
-  /// direction in which the shortest path leaves the source to that in which it arrives, so that U_i phi_i / |phi_i| is
-  /// the gradient of the distance; they are rotations, also where the path reverses the orientation (surfaces that are
-  /// not orientable).
-  /// @param u_axis  as of `Surface::source`
+  /// The log map from a point, with the axes, statuses and vertices of a heat map. `LogMap::method` is exact. `map_quality` is
+  /// low where coordinates of neighbors jump, at the cut locus. There is no error estimate. The frames rotate the direction in
+  /// which the shortest path leaves the source to the direction in which it arrives: U_i phi_i / |phi_i| is the gradient of
+  /// the distance. They are rotations even where the path reverses the orientation (surfaces that are not orientable).
+  /// @param u_axis  as in `Surface::source`
   /// @throws InvalidArgument (as `Surface::source`, `exact::exact_map`), ResourceExhausted, Cancelled
   LogMap log_map(const SurfacePoint& source, const std::optional<Vec3>& u_axis = {},
                  const ExactMapOptions& options = {}) const;
-  /// The map from a vertex of the graph, in the axes of its frame. @throws as above
+  /// The map from a vertex of the graph, in the axes of its frame. @throws as `log_map` of a point
   LogMap log_map(Vertex source, const ExactMapOptions& options = {}) const;
-  /// The map from several points at once: every vertex is seen from the nearest, whose number is its label, in the axes
-  /// of that one, turned by its angle and moved on from its position. From points of a curve, with u axes along it and
-  /// positions by arclength, these are coordinates along the curve and across it (`SurfaceCurve::samples`).
-  /// @throws InvalidArgument (no source), as above
+  /// The map from several sources at once. The label of a vertex is the number of its nearest source. Its coordinates are in
+  /// the axes of that source, rotated by the source's angle and shifted by its position. From points of a curve, with u axes
+  /// along it and positions by arclength, these are coordinates along the curve and across it (`SurfaceCurve::samples`).
+  /// @throws InvalidArgument (no source), as `log_map` of a point
   LabelledLogMap log_map(std::span<const ExactSource> sources, const ExactMapOptions& options = {}) const;
 
-  /// The same polar coordinates, of the vertices that the options let the windows reach: where a front can go on from.
-  /// @param options  frames: whether the arrivals are wanted, too
-  /// @throws as above
+  /// The polar coordinates of `log_map`, for the vertices that windows reach within the options. A front can continue from
+  /// them.
+  /// @param options  frames: whether arrival directions are computed, too
+  /// @throws as `log_map` of a point
   std::vector<Wavefront::Seed> seeds(const SurfacePoint& source, const std::optional<Vec3>& u_axis = {},
                                      const ExactMapOptions& options = {}) const;
   std::vector<Wavefront::Seed> seeds(Vertex source, const ExactMapOptions& options = {}) const;
 
-  /// The shortest path through points in their order. Its length is in world units; `position` tells where its points lie.
+  /// The shortest path through points in their order. Its length is in world units; `position` converts its points to space.
   /// @throws InvalidArgument (fewer than two points; as `Surface::source`)
   exact::GeodesicPath path(std::span<const SurfacePoint> stops, bool closed = false) const;
 
@@ -102,28 +102,28 @@ class ExactGeodesics {
   /// @throws InvalidArgument (as `Surface::source`), Cancelled
   std::vector<exact::GeodesicPath> paths(std::span<const std::array<SurfacePoint, 2>> pairs,
                                          const Progress& progress = {}, unsigned threads = 0) const;
-  /// The same curve made locally shortest: pulled taut, its ends apart. `closed`: a loop, no point of which is kept.
+  /// Makes a curve locally shortest: pulls it taut between its ends. `closed`: a loop, of which every point may move.
   /// @throws as `exact::shortened_path`
   exact::GeodesicPath shortened(std::span<const exact::MeshPoint> curve, bool closed = false) const;
-  /// A locally shortest path, without an exact map: fast on surfaces of any size, not always the shortest
+  /// A locally shortest path, without an exact map. It is fast on surfaces of any size, but not always the shortest
   /// (`exact::locally_shortest_path`). @throws InvalidArgument (as `Surface::source`)
   exact::GeodesicPath locally_shortest_path(const SurfacePoint& from, const SurfacePoint& to) const;
 
   /// The straightest geodesic from a point along a vector of space, projected to the surface.
-  /// @param length  >= 0, world units, as of the result
+  /// @param length  >= 0, world units; so is the length of the result
   /// @throws InvalidArgument (as `Surface::source`, `exact::trace`)
   exact::TracedPath trace(const SurfacePoint& from, const Vec3& direction, double length) const;
 
-  /// A point of the surface as one of the triangles.
-  /// @throws InvalidArgument (a point that the surface does not have)
+  /// Converts a point of the surface to a point of the triangles.
+  /// @throws InvalidArgument (a point that is not on the surface)
   exact::MeshPoint point(const SurfacePoint& point) const;
-  /// Where a point of the triangles lies, world units. @throws InvalidArgument (no positions)
+  /// Position of a point of the triangles, world units. @throws InvalidArgument (no positions)
   Vec3 position(const exact::MeshPoint& point) const;
 
  private:
-  /// Axes of a source in the tangent plane in which `exact::ExactMap::direction` counts: u is (a[0], a[2]), v (a[1], a[3]).
+  /// Axes of a source in the tangent plane of `exact::ExactMap::direction`: u is (a[0], a[2]), v is (a[1], a[3]).
   using Axes = std::array<double, 4>;
-  /// The sources as heat has them, and what they are in the triangles.
+  /// Sources in the form of the heat method, with their points and axes on the triangles.
   struct Placed {
     std::vector<exact::MeshPoint> points;
     std::vector<Axes> axes;
@@ -148,7 +148,7 @@ class ExactGeodesics {
   FlatTriangles flat_;
 };
 
-/// One map. @throws as `ExactGeodesics`
+/// Computes one exact log map. @throws as `ExactGeodesics`
 LogMap exact_log_map(const Surface& surface, const SurfacePoint& source, const std::optional<Vec3>& u_axis = {},
                      const ExactMapOptions& options = {});
 

@@ -1,5 +1,5 @@
 /// \file
-/// Flat triangles glued along their sides: all that exact geodesics need to know of a surface.
+/// Flat triangles glued along their sides: the input of exact geodesics.
 ///
 /// \code
 /// ahm::exact::PolyhedralSurface surface(mesh.topology().half_edges(), layouts);
@@ -24,43 +24,44 @@ using detail::HalfEdges;
 using detail::next;
 using detail::previous;
 
-/// The three sides of a face laid out in the plane, counter-clockwise, as vectors; they sum to zero. Any turn will do.
+/// The three sides of a face laid out in the plane, counterclockwise, as vectors that sum to zero. Any rotation is valid.
 using FaceSides = std::array<Vec2, 3>;
 
-/// A point of a face by the weights of its corners as stored; one zero weight puts it on a side, two at a vertex.
+/// A point of a face by barycentric weights, in the stored order of corners. One zero: on a side; two: at a vertex.
 struct MeshPoint {
   Index face = 0;
   std::array<double, 3> barycentric{1, 0, 0};
 };
 
-/// What crossing the face of a half-edge takes. The frame of a half-edge has its tail at the origin, its head at
-/// (length, 0) and the third corner of its face, the apex, above.
+/// The data needed to cross the face of a half-edge. The frame of a half-edge has the tail at the origin and the head at
+/// (length, 0). The third corner of the face, the apex, is above.
 struct HalfRecord {
   double length, apex_x, apex_y;
-  double back_x;       ///< length - apex_x without cancellation, where the apex is near the head
+  double back_x;       ///< length - apex_x, without cancellation where the apex is near the head
   double left, right;  ///< lengths of the sides tail - apex and head - apex
   Index tail, head, apex;
-  Half beyond_left, beyond_right;  ///< half-edges of the faces beyond these sides, negative on the boundary
-  std::uint8_t mirrored;  ///< bit 0: the face beyond the left side is oppositely oriented, bit 1: the right one
+  Half beyond_left, beyond_right;  ///< half-edges across these sides; negative on the boundary
+  std::uint8_t mirrored;  ///< bit 0: the face across the left side has the opposite orientation; bit 1: the right side
 };
 
-/// An immutable polyhedral surface with or without boundary, of any number of components, orientable or not. Sides of
-/// the same face may be glued to each other.
+/// An immutable polyhedral surface, with or without boundary, of any number of components, orientable or not. Sides of one face
+/// may be glued to each other.
 class PolyhedralSurface {
  public:
-  /// @param edges    of triangles
-  /// @param sides    one per face; both faces of an edge give it the same length to 1e-9
-  /// @param corners  one half-edge that starts at each vertex, which is oriented like its face, -1 for a vertex without faces;
-  ///                 empty: the lowest
-  /// @throws InvalidGeometry naming the face or half-edge: a side that is not finite or zero, a triangle flatter than
-  ///         1e-13 of its longest side, sides that do not close, lengths that differ, twins that are not mutual or join
-  ///         other vertices, a vertex with several fans or none
+  /// @param edges    half-edges of triangles
+  /// @param sides    one per face; both faces of an edge have the same length for it to 1e-9
+  /// @param corners  per vertex: a half-edge that starts there, whose face defines the orientation of the vertex; -1 for a
+  ///                 vertex without faces; empty: the lowest half-edge
+  /// @throws InvalidGeometry naming the face or half-edge: a side that is not finite or zero, a triangle flatter than 1e-13 of
+  /// its longest side, sides that do not close, lengths that differ, twins that are not mutual or join other vertices, a vertex
+  /// with several fans or none
   PolyhedralSurface(const HalfEdges& edges, std::span<const FaceSides> sides, std::span<const Half> corners = {});
-  /// The same, asking for the sides of one face after the other.
+  /// Calls `sides_of` for one face after the other.
   PolyhedralSurface(const HalfEdges& edges, const std::function<FaceSides(Index)>& sides_of,
                     std::span<const Half> corners = {});
-  /// By lengths alone: length s of a face is that of its side s. Flat caps are known only to 1e-8 this way.
-  /// @throws InvalidGeometry as above
+  /// Builds the surface from edge lengths: length s of a face is that of its side s. Flat cap triangles are accurate only to
+  /// 1e-8.
+  /// @throws InvalidGeometry (as the constructor)
   static PolyhedralSurface from_lengths(const HalfEdges& edges, std::span<const std::array<double, 3>> lengths,
                                         std::span<const Half> corners = {});
 
@@ -83,38 +84,38 @@ class PolyhedralSurface {
     const auto [face, s] = split(h);
     return face_[face].angle[s];
   }
-  /// Sum of the angles about a vertex.
+  /// Sum of the angles around a vertex.
   double angle_sum(Index vertex) const { return angle_sum_[vertex]; }
   bool on_boundary(Index vertex) const { return on_boundary_[vertex] != 0; }
-  /// Whether shortest paths may bend at a vertex: on the boundary, or about more than 2 pi.
+  /// Whether shortest paths may bend at a vertex: on the boundary, or where the angle sum exceeds 2 pi.
   bool bends_paths(Index vertex) const;
-  /// Where angles about a vertex are counted from: its rightmost corner on the boundary, or the one given.
+  /// The corner where angles around a vertex start: the rightmost one on the boundary, else the one of the constructor.
   Corner first_corner(Index vertex) const { return corner_[vertex]; }
-  /// 2 pi / angle sum at interior vertices, 1 on the boundary: from angles of the surface to those of the tangent space,
-  /// as the frames of the triangle backend have it.
+  /// Factor from angles on the surface to angles in the tangent space, as in the frames of the triangle backend: 2 pi / angle
+  /// sum at interior vertices, 1 on the boundary.
   double angle_scale(Index vertex) const;
   Index component(Index vertex) const { return component_[vertex]; }
   /// Mean length of the sides of all faces.
   double mean_length() const noexcept { return mean_length_; }
 
-  /// The corner beyond the side met last (left) or first (right) when turning counter-clockwise; half < 0: boundary.
+  /// The neighboring corner across the last (left) or first (right) side in counterclockwise order; half < 0: boundary.
   Corner turn_left(Corner c) const { return beyond(c.forward ? previous(c.half) : c.half, !c.forward, c.forward); }
   Corner turn_right(Corner c) const { return beyond(c.forward ? c.half : previous(c.half), c.forward, c.forward); }
-  /// The angle at a vertex from its first corner's right side to the right side of this corner.
+  /// The angle around a vertex from the right side of its first corner to the right side of `corner`.
   double turned(Corner corner) const;
 
-  /// @throws InvalidArgument (out of range), InvalidGeometry (fault "vertex_without_triangles")
+  /// A vertex as a point of a face. @throws InvalidArgument (out of range), InvalidGeometry (fault "vertex_without_triangles")
   MeshPoint vertex_point(Vertex vertex) const;
-  /// The point's place in the frame of side 0 of its face.
+  /// Position of a point in the frame of side 0 of its face.
   Vec2 place(const MeshPoint& point) const;
 
  private:
-  /// In two cache lines, by its sides or by the corners where they start.
+  /// Data of one face, in two cache lines. Arrays are indexed by side, or by the corner where the side starts.
   struct alignas(64) Face {
     double length[3], apex_x[3], apex_y[3], angle[3];
     Index tail[3];
-    Half beyond[3];         ///< negative on the boundary
-    std::uint8_t mirrored;  ///< bit s: the face beyond side s is oppositely oriented
+    Half beyond[3];         ///< half-edge across each side; negative on the boundary
+    std::uint8_t mirrored;  ///< bit s: the face across side s has the opposite orientation
   };
 
   struct FaceSide {
