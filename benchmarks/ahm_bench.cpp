@@ -17,7 +17,7 @@ void list() {
   for (const Experiment& e : experiments()) fmt::print("{:<14} {:<12} {}\n", e.name, e.figure, e.title);
 }
 
-std::vector<const Experiment*> named(const std::vector<std::string>& names) {
+std::vector<const Experiment*> find_experiments(const std::vector<std::string>& names) {
   std::vector<const Experiment*> result;
   for (const std::string& name : names) {
     const auto before = result.size();
@@ -33,7 +33,7 @@ std::vector<const Experiment*> named(const std::vector<std::string>& names) {
 int run(const std::vector<std::string>& names, const std::string& folder, const Settings& settings) {
   RunRecord record(folder);
   int failed = 0;
-  for (const Experiment* e : named(names)) try {
+  for (const Experiment* e : find_experiments(names)) try {
       fmt::print("{:<14} ", e->name);
       std::fflush(stdout);
       record.run(*e, settings);

@@ -2,7 +2,7 @@
 /// Time and memory of a piece of work.
 ///
 /// \code
-/// const double seconds = least_seconds([&] { solver.solve(source); });
+/// const double seconds = min_seconds([&] { solver.solve(source); });
 /// const double megabytes = added_megabytes([&] { ahm::LogMapSolver(graph).solve(source); });
 /// \endcode
 #pragma once
@@ -21,7 +21,7 @@ namespace ahm::bench {
 
 /// Shortest wall-clock time of five runs, or of as many as fit into five seconds. Other work of the machine only adds time.
 template <class Work>
-double least_seconds(const Work& work) {
+double min_seconds(const Work& work) {
   double least = std::numeric_limits<double>::infinity(), sum = 0;
   for (int run = 0; run < 5 && sum < 5; ++run) {
     const double time = seconds(work);

@@ -1,8 +1,8 @@
-# Installs the targets of every component, the package configuration and the Find modules it needs.
+# Installs the targets of every component, the package configuration file and the Find modules that it uses.
 include(CMakePackageConfigHelpers)
 set(AHM_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/ahm)
 
-# AHM_NEEDS: what each component stands on, as its target links it.
+# AHM_NEEDS: the dependencies of each component, from the libraries that its target links.
 get_property(AHM_COMPONENTS GLOBAL PROPERTY AHM_COMPONENTS)
 foreach(component IN LISTS AHM_COMPONENTS)
   install(EXPORT ahm-${component}-targets NAMESPACE ahm:: DESTINATION ${AHM_CMAKE_DIR} COMPONENT dev)
@@ -21,7 +21,8 @@ install(FILES
   cmake/FindCHOLMOD.cmake cmake/FindFLANN.cmake cmake/FindMinizip.cmake cmake/FindPCLLibraries.cmake
   DESTINATION ${AHM_CMAKE_DIR} COMPONENT dev)
 
-# pkg-config: ahm-core, ahm-pointcloud, ...; not for what stands on PCL or GoogleTest. A static libahm needs what is private.
+# pkg-config files ahm-core, ahm-pointcloud, ...; none for the components that depend on PCL or GoogleTest. A static libahm also
+# requires the private libraries.
 file(RELATIVE_PATH AHM_PREFIX_FROM_PC "${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig" "${CMAKE_INSTALL_PREFIX}")
 string(REGEX REPLACE "/$" "" AHM_PREFIX_FROM_PC "${AHM_PREFIX_FROM_PC}")
 set(private_cholesky "-lcholmod -lamd -llapack -lblas -pthread -ldl")
@@ -55,23 +56,23 @@ foreach(component IN LISTS AHM_COMPONENTS)
   install(FILES ${CMAKE_CURRENT_BINARY_DIR}/ahm-${component}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT dev)
 endforeach()
 
-# The README without its picture and its links, which lead into the repository.
+# Installs the README without its picture and its links, which point into the repository.
 file(READ README.md readme)
 string(REGEX REPLACE "!\\[[^]]*\\]\\([^)]*\\)\n*" "" readme "${readme}")
 string(REGEX REPLACE "\\[([^]]*)\\]\\([^)]*\\)" "\\1" readme "${readme}")
 file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/README.md "${readme}")
 install(FILES LICENSE CHANGELOG.md ${CMAKE_CURRENT_BINARY_DIR}/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT dev)
 
-# The Python package; pip takes another way (pyproject.toml).
+# Installs the Python package. pip installs it by pyproject.toml instead.
 if(TARGET ahm_python AND NOT DEFINED SKBUILD)
   set(AHM_PYTHON_DIR ${CMAKE_INSTALL_LIBDIR}/python${Python3_VERSION_MAJOR}.${Python3_VERSION_MINOR}/site-packages
-    CACHE STRING "Where the Python package is installed, seen from the prefix")
+    CACHE STRING "Installation directory of the Python package, relative to the prefix")
   install(TARGETS ahm_python LIBRARY DESTINATION ${AHM_PYTHON_DIR}/ahm COMPONENT python)
   install(DIRECTORY python/ahm DESTINATION ${AHM_PYTHON_DIR} COMPONENT python
     FILES_MATCHING PATTERN "*.py" PATTERN "*.pyi" PATTERN "py.typed" PATTERN "__pycache__" EXCLUDE)
 endif()
 
-# Debian packages: cpack -G DEB, as scripts/packages.sh does.
+# Debian packages, built by cpack -G DEB (scripts/packages.sh).
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME ahm)
 set(CPACK_PACKAGE_CONTACT "The authors of libahm <libahm@localhost>")
@@ -106,7 +107,7 @@ if(TARGET ahm_pcl)
     set(CPACK_DEBIAN_${package}_PACKAGE_RECOMMENDS "libahm${soname}-pcl")
   endforeach()
 endif()
-# What is built here has no package yet in which dpkg-shlibdeps could look: the dependencies above name it.
+# dpkg-shlibdeps finds no package for the libraries built here, so the dependencies above name their packages.
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${CMAKE_BINARY_DIR}/lib)
 foreach(component library dev program python pcl)
   string(TOUPPER ${component} upper)

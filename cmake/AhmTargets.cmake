@@ -1,8 +1,8 @@
-# GCC 12 takes `"text" + std::to_string(n)` for overlapping or endless copies, hence the last two.
+# GCC 12 reports `"text" + std::to_string(n)` falsely as an overlapping or oversized copy; the -Wno options suppress this.
 set(AHM_WARNINGS $<$<CXX_COMPILER_ID:GNU,Clang>:-Wall -Wextra -Wpedantic>
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict -Wno-stringop-overflow -Wno-array-bounds>)
 
-# For precompiled headers. Configured with CMAKE_DISABLE_PRECOMPILE_HEADERS, every source must include what it needs itself.
+# Precompiled headers. Sources must also compile without them (CMAKE_DISABLE_PRECOMPILE_HEADERS), so each includes what it uses.
 set(AHM_STANDARD_HEADERS <algorithm> <array> <cmath> <functional> <limits> <memory> <mutex> <numeric> <optional> <span>
   <stop_token> <string> <thread> <utility> <variant> <vector>)
 
@@ -12,8 +12,8 @@ if(BUILD_SHARED_LIBS)
   check_linker_flag(CXX "LINKER:--version-script=${AHM_EXPORTED_SYMBOLS}" AHM_LINKER_KNOWS_VERSION_SCRIPTS)
 endif()
 
-# A distribution's PCL is built for the baseline processor. Memory that Eigen aligns for AVX cannot be handed to it, so sources that
-# do stay at the baseline even when the rest of the build is tuned (-march=native).
+# A distribution's PCL is compiled for the baseline processor. It cannot use memory that Eigen aligns for AVX. Sources that pass such
+# memory to PCL are therefore compiled without AVX, even if the build uses -march=native.
 set(AHM_PCL_ALIGNMENT "")
 if(AHM_WITH_PCL AND CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|i[3-6]86)$")
   include(CheckCXXCompilerFlag)
@@ -23,11 +23,12 @@ if(AHM_WITH_PCL AND CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|i[3-6]86)$")
   endif()
 endif()
 
-# Where programs and libraries find their modules, for the sources that include ahm/util/module.hpp.
+# Directories in which programs and libraries look for modules, for sources that include ahm/util/module.hpp.
 file(RELATIVE_PATH AHM_LIBDIR_IN_PREFIX "${CMAKE_INSTALL_PREFIX}" "${CMAKE_INSTALL_FULL_LIBDIR}")
 set(AHM_MODULE_DEFINITIONS AHM_MODULE_LIBDIR="${AHM_LIBDIR_IN_PREFIX}" AHM_MODULE_DIR="${CMAKE_INSTALL_FULL_LIBDIR}/ahm")
 
-# ahm_module(<name> SOURCES <file...> LINK <target...>): ahm_<name>.so, which is loaded when it is first needed (ahm/util/module.hpp).
+# ahm_module(<name> SOURCES <file...> LINK <target...>): adds the module ahm_<name>.so, which is loaded on first use
+# (ahm/util/module.hpp).
 function(ahm_module name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
   set(target ahm_module_${name})
@@ -42,20 +43,20 @@ function(ahm_module name)
   endif()
 endfunction()
 
-# ahm_compile_together(<target> [ALONE <file...>]): with AHM_UNITY_BUILD, compiles six sources at a time, in half of the processor time.
-# ALONE: sources that define the same names as others in an unnamed namespace, or need options of their own.
+# ahm_compile_together(<target> [ALONE <file...>]): with AHM_UNITY_BUILD, compiles six sources as one, which halves the processor
+# time. ALONE: sources that are compiled separately: they define the same names in an unnamed namespace, or need other options.
 function(ahm_compile_together target)
   cmake_parse_arguments(ARG "" "" "ALONE" ${ARGN})
   if(AHM_UNITY_BUILD)
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 6)
     set_source_files_properties(${ARG_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
-    # GCC takes a source that is included for a header, and warns of its unnamed namespaces.
+    # GCC treats an included source as a header, and warns about its unnamed namespaces.
     target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
   endif()
 endfunction()
 
-# ahm_library(<component> SOURCES <file...> [ALONE <file...>]): the static or shared library ahm_<component>, alias
-# ahm::<component>, with its public headers in include/ and private ones beside its sources in src/; ALONE as above.
+# ahm_library(<component> SOURCES <file...> [ALONE <file...>]): adds the static or shared library ahm_<component>, with the alias
+# ahm::<component>. Public headers are in include/, private headers in src/. ALONE: as in ahm_compile_together.
 function(ahm_library component)
   cmake_parse_arguments(ARG "" "" "SOURCES;ALONE" ${ARGN})
   set(target ahm_${component})
@@ -69,10 +70,10 @@ function(ahm_library component)
   target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:ahm_util>)
   target_precompile_headers(${target} REUSE_FROM ahm_precompiled)
   ahm_compile_together(${target} ALONE ${ARG_ALONE})
-  # Until 1.0 the interface may change with every minor version. DEFINE_SYMBOL: compiled alike, static or shared.
+  # Until 1.0 the ABI may change with every minor version. DEFINE_SYMBOL "": static and shared builds compile sources equally.
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${component} POSITION_INDEPENDENT_CODE ON DEFINE_SYMBOL ""
     VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
-  if(BUILD_SHARED_LIBS AND AHM_LINKER_KNOWS_VERSION_SCRIPTS AND NOT component STREQUAL "conformance")  # that is GoogleTest's, too
+  if(BUILD_SHARED_LIBS AND AHM_LINKER_KNOWS_VERSION_SCRIPTS AND NOT component STREQUAL "conformance")  # it also exports symbols of GoogleTest
     target_link_options(${target} PRIVATE "LINKER:--version-script=${AHM_EXPORTED_SYMBOLS}")
     set_property(TARGET ${target} APPEND PROPERTY LINK_DEPENDS ${AHM_EXPORTED_SYMBOLS})
   endif()
@@ -89,7 +90,7 @@ function(ahm_library component)
   endif()
 endfunction()
 
-# ahm_install_headers(<component>): installs the interface library ahm_<component> and its include/ as ahm::<component>.
+# ahm_install_headers(<component>): installs the interface library ahm_<component> as ahm::<component>, and its directory include/.
 function(ahm_install_headers component)
   set_target_properties(ahm_${component} PROPERTIES EXPORT_NAME ${component})
   if(AHM_INSTALL)

@@ -1,4 +1,4 @@
-# Says at configure time which BLAS will be called: the reference BLAS is several times slower than an optimised one.
+# Prints at configure time which BLAS is in use. The reference BLAS is several times slower than an optimized one.
 if(NOT DEFINED AHM_BLAS_FOUND)
   try_run(AHM_BLAS_RUN AHM_BLAS_COMPILED "${CMAKE_BINARY_DIR}/blas_check" "${CMAKE_CURRENT_LIST_DIR}/blas_check.c"
     CMAKE_FLAGS "-DINCLUDE_DIRECTORIES=${CHOLMOD_INCLUDE_DIR}"
@@ -10,6 +10,6 @@ endif()
 if(AHM_BLAS_FOUND MATCHES "OpenBLAS|openblas|mkl|blis|atlas")
   message(STATUS "BLAS in use: ${AHM_BLAS_FOUND}")
 else()
-  message(WARNING "The BLAS is not optimised (${AHM_BLAS_FOUND}): factorizations of large surfaces will be several times slower. "
-    "Install an optimised one (Debian: libopenblas0-pthread).")
+  message(WARNING "The BLAS is not optimized (${AHM_BLAS_FOUND}): factorizations of large surfaces will be several times slower. "
+    "Install an optimized one (Debian: libopenblas0-pthread).")
 endif()

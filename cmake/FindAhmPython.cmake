@@ -1,5 +1,5 @@
-# An interpreter that has numpy and pybind11: Python3_EXECUTABLE where it is given, else the first of those on the path, then
-# the system's own. Sets AhmPython_FOUND, Python3_EXECUTABLE and what pybind11 brings.
+# Finds an interpreter with numpy and pybind11: Python3_EXECUTABLE if it is set, otherwise the first of python3 on the path and
+# /usr/bin/python3. Sets AhmPython_FOUND, Python3_EXECUTABLE and the variables of pybind11.
 set(_candidates ${Python3_EXECUTABLE})
 if(NOT Python3_EXECUTABLE)
   find_program(_on_path python3)
@@ -20,4 +20,4 @@ endforeach()
 include(FindPackageHandleStandardArgs)
 
 find_package_handle_standard_args(AhmPython REQUIRED_VARS pybind11_DIR Python3_Development.Module_FOUND
-  REASON_FAILURE_MESSAGE "no interpreter with numpy, pybind11 and headers (Debian: python3-numpy python3-pybind11 python3-dev)")
+  REASON_FAILURE_MESSAGE "found no interpreter with numpy, pybind11 and headers (Debian: python3-numpy python3-pybind11 python3-dev)")

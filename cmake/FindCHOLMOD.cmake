@@ -1,4 +1,4 @@
-# Finds SuiteSparse's CHOLMOD, which Debian ships without a CMake or pkg-config file, and AMD, LAPACK and the BLAS beneath it.
+# Finds SuiteSparse's CHOLMOD, which Debian ships without a CMake or pkg-config file, and its dependencies AMD, LAPACK and BLAS.
 # Target: CHOLMOD::CHOLMOD.
 find_path(CHOLMOD_INCLUDE_DIR cholmod.h PATH_SUFFIXES suitesparse)
 find_library(CHOLMOD_LIBRARY cholmod)

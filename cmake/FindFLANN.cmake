@@ -1,4 +1,4 @@
-# Finds FLANN by header and library; its own .pc file pulls in HDF5 and MPI, which searching does not need.
+# Finds FLANN by header and library. Its .pc file would add HDF5 and MPI, which the neighbor search does not use.
 # Target: FLANN::FLANN.
 find_path(FLANN_INCLUDE_DIR flann/flann.hpp)
 find_library(FLANN_LIBRARY flann_cpp)

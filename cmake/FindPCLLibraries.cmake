@@ -1,10 +1,10 @@
-# Finds PCL's libraries by name. PCL's own package file is avoided on purpose: on Debian it takes seconds, needs the C language,
-# and drags VTK, Qt and MPI into every link.
+# Finds PCL's libraries by name. It avoids PCL's own package file, which on Debian takes seconds, requires the C language, and adds
+# VTK, Qt and MPI to every link.
 #
 #   find_package(PCLLibraries REQUIRED COMPONENTS common kdtree filters)
 #
 # Each component becomes the target PCLLibraries::<component>; PCLLibraries_VERSION is read from pcl/pcl_config.h.
-# Without COMPONENTS: all that libahm uses.
+# Without COMPONENTS: all components that libahm uses.
 if(NOT PCLLibraries_FIND_COMPONENTS)
   set(PCLLibraries_FIND_COMPONENTS common kdtree search octree filters features io)
 endif()
@@ -36,8 +36,8 @@ find_package_handle_standard_args(PCLLibraries
   VERSION_VAR PCLLibraries_VERSION HANDLE_COMPONENTS
   REASON_FAILURE_MESSAGE "install PCL (Debian: libpcl-dev) or configure with -DAHM_WITH_PCL=OFF")
 
-# Under the address sanitizer Eigen aligns memory by hand; PCL, compiled without it, does not, and each must be able to free
-# what the other allocated. The sanitizer's malloc is aligned well enough for both.
+# Under the address sanitizer, Eigen aligns memory itself; PCL, compiled without the sanitizer, does not. Each must be able to free
+# memory of the other. The sanitizer's malloc is aligned sufficiently for both.
 set(_pcl_definitions "")
 if("${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${CMAKE_BUILD_TYPE}}" MATCHES "-fsanitize=[^ ]*address")
   set(_pcl_definitions EIGEN_MALLOC_ALREADY_ALIGNED=1)
@@ -51,7 +51,7 @@ if(PCLLibraries_FOUND)
         IMPORTED_LOCATION "${PCL_${_component}_LIBRARY}"
         INTERFACE_INCLUDE_DIRECTORIES
           "${PCL_INCLUDE_DIR};${PCL_EIGEN_INCLUDE_DIR};${PCL_BOOST_INCLUDE_DIR};${PCL_FLANN_INCLUDE_DIR}"
-        # FLANN's headers, which PCL's search includes, compress their index files with lz4 inline.
+        # PCL's search includes FLANN's headers, whose inline functions use lz4.
         INTERFACE_LINK_LIBRARIES "${PCL_LZ4_LIBRARY}"
         INTERFACE_COMPILE_DEFINITIONS "${_pcl_definitions}")
     endif()

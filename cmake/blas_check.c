@@ -8,7 +8,7 @@
 
 int main(void) {
   cholmod_common common;
-  cholmod_l_start(&common); /* makes the linker keep CHOLMOD, and with it the BLAS */
+  cholmod_l_start(&common); /* keeps the linker from dropping CHOLMOD and the BLAS */
   cholmod_l_finish(&common);
   char* (*config)(void) = (char* (*)(void))dlsym(RTLD_DEFAULT, "openblas_get_config");
   Dl_info info;

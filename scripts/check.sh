@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Checks beyond the compiler and the tests: the format of every source, the wording of pages and comments, clang-tidy, and the tests
-# under the sanitizers. Installs what these need.
+# Runs additional checks: the format of every source, the wording of pages and comments, clang-tidy, and the tests under the
+# sanitizers. Installs the packages that they require.
 #   check.sh [format|words|tidy|tidy-all|sanitizers|threads ...]     default: format, words, tidy and sanitizers
-# tidy checks what differs from main and the sources that include it; tidy-all everything, without the one check that takes as long
-# as all others.
+# tidy checks the files that differ from main, and the sources that include them. tidy-all checks all sources, except for the one
+# check that takes as long as all others.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -22,7 +22,7 @@ sources() {
     ':!*/no_*.cpp' ':!*/stb.cpp' ':!*/pack.cpp'
 }
 
-# Nothing has to be built for it.
+# Configures a build folder for clang-tidy; nothing has to be built.
 configure_tidy() {
   cmake -S . -B "build/$1" -G Ninja -DCMAKE_BUILD_TYPE=Debug -DAHM_WITH_PCL=OFF -DAHM_BUILD_TESTS=OFF -DAHM_BUILD_EXAMPLES=OFF \
     -DAHM_BUILD_PYTHON=OFF -DAHM_INSTALL=OFF "${@:2}" >/dev/null
@@ -32,9 +32,9 @@ run_tidy() {
   xargs -r -n 1 -P "$(nproc)" clang-tidy -p "build/$1" --quiet --warnings-as-errors='*' "${@:2}"
 }
 
-# Without precompiled headers: each source must include what it needs.
+# Configures without precompiled headers: each source must include what it uses.
 tidy() {
-  echo "clang-tidy on what differs from main ..."
+  echo "clang-tidy on files that differ from main ..."
   configure_tidy tidy -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON
   local base changed; base="$(git merge-base HEAD main 2>/dev/null || git rev-parse HEAD)"
   mapfile -t changed < <(git diff --name-only --diff-filter=d "$base" -- '*.cpp' '*.hpp')
@@ -42,13 +42,13 @@ tidy() {
     for file in "${changed[@]}"; do
       case "$file" in
         *.hpp) sources '*.cpp' | xargs grep -lF "$(basename "$file")\"" || true ;;
-        *) sources '*.cpp' | grep -Fx "$file" || true ;;  # git forgets a path beside several exclusions
+        *) sources '*.cpp' | grep -Fx "$file" || true ;;  # git ls-files ignores a path combined with several exclusions
       esac
     done
   } | sort -u | run_tidy tidy
 }
 
-# Sources as they are compiled, six at a time (AHM_UNITY_BUILD): in half of the time.
+# Checks six sources as one (AHM_UNITY_BUILD), which halves the time.
 tidy-all() {
   echo "clang-tidy ..."
   configure_tidy tidy-all -DAHM_UNITY_BUILD=ON
@@ -57,7 +57,7 @@ tidy-all() {
     run_tidy tidy-all --checks=-performance-unnecessary-value-param,-bugprone-suspicious-include
 }
 
-# Half a minute and more each under the sanitizers; others walk through the same lines.
+# Tests that take half a minute or more each under the sanitizers. Other tests cover the same lines.
 slow=("CholeskyFactor.SolvesAsEigens*" ExactMap.GoesFarAlongTubes ExactMap.IsRefusedWhereNeedlesLoseWindows ExactMap.NamesMeshesOnWhichWindowsDoNotEnd
   FactorFront.IsEigensOfEverySmallFrontAndOfLargeOnes LocalMaps.ApproachTheMapOfTheWholeGraphWithTheMargin
   LocalMaps.DoNotDependOnThreadsOrOnCompany LocalMaps.RefuseWhatFillsTheMemory March.AgreesWithTheGlobalSolve March.DoesNotDependOnThreads

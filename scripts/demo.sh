@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Installs what libahm needs on Debian 12, builds the program, gets a real scan and draws its logarithmic map.
+# Installs the packages that libahm requires on Debian 12, builds the program, downloads a real scan and draws its logarithmic map.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 demo=build/demo
 
-# The program alone, without what the demo does not use: half of a full build's packages and a fraction of its time.
+# Builds only the program, without the parts that the demo does not use: half of the packages and a fraction of the time of a full build.
 scripts/install_packages.sh program
 echo "Configuring and building the program (build/demo/program) ..."
 cmake -S . -B "$demo/program" -G Ninja -DCMAKE_BUILD_TYPE=Release -DAHM_BUILD_TESTS=OFF -DAHM_INSTALL=OFF \
@@ -12,11 +12,11 @@ cmake -S . -B "$demo/program" -G Ninja -DCMAKE_BUILD_TYPE=Release -DAHM_BUILD_TE
 cmake --build "$demo/program" --target ahm_program
 ahm="$demo/program/bin/ahm"
 
-# Debian's libcgal-demo carries real point sets. It is only unpacked here, not installed.
+# Debian's package libcgal-demo contains real point sets. It is only unpacked here, not installed.
 scan="$demo/kitten.xyz"
 source_point=0,0.35,0.1
 if [ ! -s "$scan" ]; then
-  echo "Getting a scan from Debian's package libcgal-demo (24 MB) ..."
+  echo "Downloading a scan from Debian's package libcgal-demo (24 MB) ..."
   unpack="$(mktemp -d)"
   trap 'rm -rf "$unpack"' EXIT
   if (cd "$unpack" && chmod 755 . && apt-get download -qq libcgal-demo 2>/dev/null) &&
@@ -26,7 +26,7 @@ if [ ! -s "$scan" ]; then
   fi
 fi
 if [ ! -s "$scan" ]; then
-  echo "The package cannot be had; generating a scan with noise, holes and uneven density instead."
+  echo "The package cannot be downloaded; generating a scan with noise, holes and uneven density instead."
   scan="$demo/generated.xyz"
   source_point=0,0.3,1
   cmake --build "$demo/program" --target example_05_generate_scan
@@ -40,4 +40,4 @@ echo
 "$ahm" logmap "$scan" --source="$source_point" -o "$demo/map.csv" --view "$demo/map.html" >/dev/null
 echo
 echo "The map:     $demo/map.ply, $demo/map.csv"
-echo "The picture: $demo/map.png; to turn it around, open $demo/map.html in a browser."
+echo "The picture: $demo/map.png; to rotate it, open $demo/map.html in a browser."

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Builds the documentation site, build/docs/html/index.html: the pages of docs/, the C++ API from the headers (Doxygen), the Python
-# API from the package of build/release (built where it is not). Fails on warnings and on dead links within the site.
-#   docs.sh [pictures]     pictures: first run the commands of docs/gallery.md, which make its pictures
+# Builds the documentation site, build/docs/html/index.html: the pages of docs/, the C++ API from the headers (Doxygen), and the
+# Python API from the package in build/release, which is built if missing. Fails on warnings and on dead links within the site.
+#   docs.sh [pictures]     pictures: first runs the commands of docs/gallery.md, which create its pictures
 set -euo pipefail
 cd "$(dirname "$0")/.."
 out=build/docs

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Fuzzes: fuzz.sh SECONDS [NAME ...], each NAME of tests/fuzz (all without) for SECONDS of time on one core, as many at once as
-# there are cores. A finding ends it and is left in build/asan/findings; build/asan/bin/fuzz_NAME FILE runs it again. Starts from
-# generated seeds and tests/fuzz/corpus; what is new is kept in build/asan/corpus. FUZZ_SEED other than 0 makes the same choices
-# each time.
+# Runs fuzzers of tests/fuzz: fuzz.sh SECONDS [NAME ...]     default: all fuzzers
+# Each fuzzer runs for SECONDS on one core, and as many run at once as there are cores. A fuzzer ends at its first finding, which it
+# stores in build/asan/findings; build/asan/bin/fuzz_NAME FILE repeats it. Fuzzers start from generated seeds and tests/fuzz/corpus,
+# and store new inputs in build/asan/corpus. A FUZZ_SEED other than 0 makes runs repeatable.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 seconds="${1:?fuzz.sh SECONDS [NAME ...]}"
@@ -24,7 +24,7 @@ fuzz() {
   folders=("corpus/$name" "seeds/$name")
   [ ! -d "../../tests/fuzz/corpus/$name" ] || folders+=("../../tests/fuzz/corpus/$name")
   mkdir -p "${folders[@]:0:2}" "findings/$name"
-  # A case may take minutes on a busy machine; 4 GB are more than the inputs' bounds allow.
+  # An input may take minutes on a busy machine. No input within the limits of the fuzzers needs 4 GB.
   if ! "bin/fuzz_$name" -max_total_time="$2" -seed="${FUZZ_SEED:-0}" -timeout=300 -rss_limit_mb=4096 -malloc_limit_mb=2048 -max_len=16384 \
     -print_final_stats=1 -artifact_prefix="findings/$name/" "${folders[@]}" >"findings/$name.log" 2>&1; then
     echo "$name: a finding"

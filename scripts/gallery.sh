@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Runs the commands of docs/gallery.md in build/gallery, with the programs of build/release, and puts the pictures that the page shows
-# into docs/images/gallery.
+# Runs the commands of docs/gallery.md in build/gallery, with the programs of build/release, and copies the pictures of the page to
+# docs/images/gallery.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 page="$PWD/docs/gallery.md" pictures="$PWD/docs/images/gallery" programs="$PWD/build/release/bin"

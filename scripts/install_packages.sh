@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Installs Debian packages for what is to be done, and says and does nothing where all are there:
+# Installs the Debian packages for a task. Prints nothing if all are installed.
 #   install_packages.sh [program|tests|checks|docs|packages]
-# program: the program without PCL, all that scripts/demo.sh needs; tests (default): everything, tests and benchmarks
-# included; checks: that, and clang's tools; docs: tests, and what makes the site; packages: tests, and
-# what makes Debian packages.
+# program: the program without PCL, for scripts/demo.sh; tests (default): everything, including tests and benchmarks;
+# checks: tests, and the tools of clang; docs: tests, and the tools for the documentation site; packages: tests, and the
+# tools for Debian packages.
 set -euo pipefail
 
 program=(
@@ -24,7 +24,7 @@ tests=(
   libminizip-dev                                              # .npz files
   libgtest-dev libbenchmark-dev                               # tests and benchmarks
   libcgal-dev python3-matplotlib                              # exact distances and plots of the experiments
-  libpetsc-real-dev libopenmpi-dev openmpi-bin                # ahm-mpi: maps by many machines
+  libpetsc-real-dev libopenmpi-dev openmpi-bin                # ahm-mpi: maps on many machines
   chromium chromium-driver python3-selenium                   # the viewer in a browser
   pybind11-dev python3-pybind11 python3-dev python3-numpy python3-scipy python3-pytest mypy  # the Python package and its tests
 )
@@ -46,14 +46,14 @@ for package in "${packages[@]}"; do
 done
 [ "${#missing[@]}" -gt 0 ] || exit 0
 
-echo "Installing ${#missing[@]} Debian packages and what they need: ${missing[*]}"
+echo "Installing Debian packages and their dependencies (${#missing[@]}): ${missing[*]}"
 as_root=()
 if [ "$(id -u)" -ne 0 ]; then
   command -v sudo >/dev/null || { echo "error: run this as root, or install sudo" >&2; exit 1; }
   as_root=(sudo)
 fi
-# apt's machine-readable status, "pmstatus:PACKAGE:PERCENT:WHAT", as one line per ten percent. In bash, since Debian's awk reads
-# blocks of 4096 bytes and would tell late.
+# Converts apt's status lines, "pmstatus:PACKAGE:PERCENT:WHAT", to one line per ten percent. In bash, because Debian's awk reads
+# blocks of 4096 bytes, which delays the output.
 progress() {
   local kind package percent rest what last="" step reached=0
   while IFS=: read -r kind package percent rest; do
@@ -69,7 +69,7 @@ progress() {
   done
 }
 apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -y -qq -o APT::Status-Fd=1 -o Dpkg::Use-Pty=0)
-echo "  reading the lists of packages"
+echo "  updating the package lists"
 "${apt[@]}" update >/dev/null
-# --no-install-recommends: PCL alone would recommend hundreds of packages more.
+# --no-install-recommends: PCL recommends hundreds of packages.
 "${apt[@]}" install --no-install-recommends "${missing[@]}" | progress

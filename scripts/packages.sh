@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
-# Builds the Debian packages (build/packages/*.deb) with shared libraries, then tries them in a fresh root of this Debian, where apt
-# installs them with what they depend on: the program, the Python package, a program built against the headers by CMake
-# and by pkg-config, PCD files with and without the package that reads them; and they are removed without a trace.
-# Nothing of this touches the system but the packages it takes to build. Needs root or sudo, for chroot.
+# Builds the Debian packages (build/packages/*.deb) with shared libraries. Then tests them in a fresh root file system of this Debian,
+# where apt installs them with their dependencies. The tests run the program and the Python package, build a program against the
+# headers with CMake and with pkg-config, and read PCD files with and without the package for them. Finally they remove the packages
+# and check that no files are left. On the system itself only the packages for building are installed. Requires root or sudo, for
+# chroot.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 scripts/install_packages.sh packages
@@ -16,7 +17,7 @@ cmake --build "$build"
 rm -f "$build"/*.deb
 (cd "$build" && cpack -G DEB)
 
-echo "In a fresh root ..."
+echo "Testing in a fresh root ..."
 if [ ! -d "$base" ]; then
   "${as_root[@]}" rm -rf "$base.part"
   # shellcheck disable=SC1091
@@ -47,7 +48,7 @@ inside '
   python3 -c "import ahm; m = ahm.log_map(ahm.shapes.plane(20, 20), 0); print(ahm.__file__, round(float(m.distance[399] ** 2), 9))"
   ahm-tiles --help >/dev/null
   zcat -f /usr/share/man/man1/ahm-logmap.1* | grep -q logmap || [ ! -d /usr/share/man/man1 ]
-  if ahm logmap plane.pcd --source 0 -o pcd.csv 2>message; then echo "error: PCD was read without its package" >&2; exit 1; fi
+  if ahm logmap plane.pcd --source 0 -o pcd.csv 2>message; then echo "error: a PCD file was read without the package libahm0.1-pcl" >&2; exit 1; fi
   cat message'
 
 inside "$install /packages/libahm0.1-pcl_*.deb >/dev/null"
@@ -64,7 +65,7 @@ inside '
 inside 'apt-get purge -y -qq ahm python3-ahm libahm-dev libahm0.1 libahm0.1-pcl >/dev/null'
 left="$("${as_root[@]}" find "$root" -xdev \( -path "$root/packages" -o -path "$root/try" -o -path "$root/proc" -o -path "$root/var/log" \) -prune \
   -o -iname '*ahm*' -print)"
-[ -z "$left" ] || { echo "error: left behind: $left" >&2; exit 1; }
+[ -z "$left" ] || { echo "error: files left after removal: $left" >&2; exit 1; }
 "${as_root[@]}" rm -rf "$root"
 echo "The packages:"
 ls -l "$build"/*.deb

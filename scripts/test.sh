@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs what libahm needs on Debian 12, builds it and runs all tests.
+# Installs the packages that libahm requires on Debian 12, builds it and runs all tests.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 

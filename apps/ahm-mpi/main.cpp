@@ -96,7 +96,7 @@ void make_map(const Arguments& a, bool coordinates) {
   TiledMapOptions options = first_alone([&] { return map_options(a.logmap, coordinates); });
   const TiledGraph graph = first_alone([&] { return TiledGraph(a.logmap.folder, a.logmap.memory / 2); });
   options.heat.threads = 1;
-  if (rank_of() == 0) options.heat.progress = telling(name);
+  if (rank_of() == 0) options.heat.progress = progress_printer(name);
   const std::vector<Vertex> sources = find_sources(graph, a.logmap.sources);
   const Source source = source_at(sources);
   TileOwners owners;

@@ -77,9 +77,10 @@ std::vector<HaloVertex> MpiTeam::share(std::span<const Index> vertices) {
   std::vector<std::vector<HaloVertex>> to(static_cast<std::size_t>(size_));
   for (std::size_t k = 0; k < vertices.size(); ++k)
     for (Index j : graph_.star(vertices[k]).neighbors) {
-      auto& told = to[static_cast<std::size_t>(owner(j))];
-      if (&told != &to[static_cast<std::size_t>(rank_)] && (told.empty() || told.back().vertex != vertices[k]))
-        told.push_back({vertices[k], first + static_cast<std::int64_t>(k)});
+      auto& owner_list = to[static_cast<std::size_t>(owner(j))];
+      if (&owner_list != &to[static_cast<std::size_t>(rank_)] &&
+          (owner_list.empty() || owner_list.back().vertex != vertices[k]))
+        owner_list.push_back({vertices[k], first + static_cast<std::int64_t>(k)});
     }
   return exchange(to);
 }

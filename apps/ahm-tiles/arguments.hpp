@@ -40,7 +40,7 @@ struct LocalArguments {
 };
 
 /// Prints each stage to standard error when it begins.
-inline Progress telling(const std::string& name) {
+inline Progress progress_printer(const std::string& name) {
   Progress progress;
   progress.report = [name, last = std::string(), begin = std::chrono::steady_clock::now()](std::string_view stage,
                                                                                            double) mutable {

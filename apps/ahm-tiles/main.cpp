@@ -109,7 +109,7 @@ void print(const Manifest& m) {
 void make_map(const MapArguments& a, bool coordinates) {
   const TiledGraph graph(a.folder, a.memory / 2);
   TiledMapOptions options = map_options(a, coordinates);
-  options.heat.progress = telling(name);
+  options.heat.progress = progress_printer(name);
   const TiledMapSummary s = write_log_map(graph, source_at(source_vertices(graph, a.sources)), a.output, options);
   print_map(s, graph.size(), coordinates);
   std::cout << "; tiles released: " << s.releases << ", parts of the map moved to disk: " << s.spills
@@ -150,11 +150,11 @@ void simulate(const Arguments& a) {
 /// Plans the input as a point cloud, or if it is not one as a mesh.
 Manifest plan_input(const Arguments& a) {
   try {
-    if (a.mesh.is_usual()) return plan_tiles(a.input, a.folder, a.tile, telling(name));
+    if (a.mesh.is_usual()) return plan_tiles(a.input, a.folder, a.tile, progress_printer(name));
   } catch (const IoError& error) {
     if (error.fault() != "no_cloud") throw;
   }
-  return plan_mesh(a.input, a.folder, a.tile, a.mesh, telling(name));
+  return plan_mesh(a.input, a.folder, a.tile, a.mesh, progress_printer(name));
 }
 
 void add_building(CLI::App& app, Arguments& a) {
@@ -165,7 +165,7 @@ void add_building(CLI::App& app, Arguments& a) {
   CLI::App& build = *app.add_subcommand("build", "build the graph of all tiles; resumes a killed run");
   add_build_options(build, a);
   build.callback([&] {
-    a.build.progress = telling(name);
+    a.build.progress = progress_printer(name);
     build_tiles(a.folder, a.build);
     print(Manifest::read(a.folder));
   });
@@ -223,7 +223,7 @@ void add_maps(CLI::App& app, Arguments& a) {
 }
 
 /// The message of an error, with the option of this program that helps.
-std::string told(const Error& error) {
+std::string message_of(const Error& error) {
   const std::string_view fault = error.fault();
   if (fault == "non_finite") return std::string(error.problem()) + "; drop them with --drop-nan";
   if (fault == "normals_given") return std::string(error.problem()) + "; estimate them with --ignore-normals";
@@ -249,7 +249,7 @@ int run(int argc, char** argv) {
 }
 
 /// Runs the program and prints its errors. @return the exit status
-int run_told(int argc, char** argv) {
+int run_and_report(int argc, char** argv) {
   try {
     const int status = run(argc, argv);
     if (std::cout.flush()) return status;
@@ -257,7 +257,7 @@ int run_told(int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     std::cerr << "ahm-tiles: error: out of memory; plan smaller tiles\n";
   } catch (const Error& e) {
-    std::cerr << "ahm-tiles: error: " << told(e) << '\n';
+    std::cerr << "ahm-tiles: error: " << message_of(e) << '\n';
   } catch (const std::exception& e) {
     std::cerr << "ahm-tiles: error: " << e.what() << '\n';
   } catch (...) {
@@ -272,5 +272,5 @@ int run_told(int argc, char** argv) {
 // threads that never end.
 int main(int argc, char** argv) {
   app::install_interrupt_handling(name);
-  _exit(run_told(argc, argv));
+  _exit(run_and_report(argc, argv));
 }

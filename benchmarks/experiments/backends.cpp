@@ -197,8 +197,8 @@ void measure(const char* part, const Shape& shape, const Exact& exact, const Set
   });
   std::optional<Backend> backend;
   std::optional<LogMapSolver> solver;
-  const double build = least_seconds([&] { backend.emplace(shape, setup); });
-  const double factor = least_seconds([&] { solver.emplace(setup.solver(backend->surface.graph())); });
+  const double build = min_seconds([&] { backend.emplace(shape, setup); });
+  const double factor = min_seconds([&] { solver.emplace(setup.solver(backend->surface.graph())); });
   std::vector<Source> sources;
   std::vector<PointLogs> logs;
   for (Index point : sources_of(shape)) {
@@ -206,10 +206,10 @@ void measure(const char* part, const Shape& shape, const Exact& exact, const Set
     const auto map = backend->on_points(solver->solve(sources.back(), options));
     logs.push_back({map.u, map.v});
   }
-  const double further = least_seconds([&] { solver->solve(sources[0], options); });
+  const double further = min_seconds([&] { solver->solve(sources[0], options); });
   const bool global = setup.strategy == Strategy::global;  // the march has no factors, and a batch saves nothing
   while (sources.size() < 32) sources.push_back(sources[sources.size() - 2]);
-  const Cell batch = global ? Cell(least_seconds([&] { solver->solve(sources, options); }) / 32) : Cell();
+  const Cell batch = global ? Cell(min_seconds([&] { solver->solve(sources, options); }) / 32) : Cell();
   const Accuracy error = accuracy(shape, exact, logs);
   table.add({part, shape.name, Backend::name, static_cast<Index>(shape.quads.points.size()), setup.name,
              known(error.mean), known(error.median), known(error.most), known(error.largest), known(error.vector),

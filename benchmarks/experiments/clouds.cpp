@@ -23,10 +23,10 @@ namespace {
 constexpr int source_count = 9;
 
 /// Errors over all vertices and sources, beyond three edges from the source.
-struct Found {
-  std::vector<double> error;  ///< relative, of the distance
+struct DistanceErrors {
+  std::vector<double> error;  ///< relative errors of the distances
   double bounded = 0;         ///< number of distances that are not longer than the straight line in space
-  std::vector<double> trusted_error;
+  std::vector<double> good_quality_error;
 };
 
 /// Points moved by `noise` mean edges in random directions.
@@ -50,7 +50,7 @@ std::vector<double> distances(const exact::ExactMap& map, const Surface& surface
 /// @param quality  quality of each row; empty: unknown
 void compare(const pointcloud::PointCloudSurface& cloud, std::span<const double> distances,
              std::span<const double> quality, const std::vector<double>& truth, Index source, double near,
-             Found& found) {
+             DistanceErrors& found) {
   const auto points = cloud.positions();
   for (std::size_t i = 0; i < distances.size(); ++i) {
     if (!std::isfinite(distances[i]) || !(truth[i] > near) || !std::isfinite(truth[i])) continue;
@@ -58,18 +58,19 @@ void compare(const pointcloud::PointCloudSurface& cloud, std::span<const double>
     found.error.push_back(error / truth[i]);
     found.bounded += distances[i] <= line;
     if (quality.empty() || !(quality[i] >= trusted_quality)) continue;
-    found.trusted_error.push_back(found.error.back());
+    found.good_quality_error.push_back(found.error.back());
   }
 }
 
-void add_row(const Surface& surface, double noise, std::string_view variant, const Found& found, Table& table) {
+void add_row(const Surface& surface, double noise, std::string_view variant, const DistanceErrors& found,
+             Table& table) {
   const auto count = static_cast<double>(found.error.size());
   const double sum = std::accumulate(found.error.begin(), found.error.end(), 0.0);
-  const bool trusts = !found.trusted_error.empty();
+  const bool has_quality = !found.good_quality_error.empty();
   table.add({surface.name(), surface.size(), noise, variant, sum / count, quantile(found.error, 0.95),
              quantile(found.error, 1), found.bounded / count,
-             trusts ? Cell(static_cast<double>(found.trusted_error.size()) / count) : Cell(),
-             trusts ? Cell(quantile(found.trusted_error, 0.95)) : Cell()});
+             has_quality ? Cell(static_cast<double>(found.good_quality_error.size()) / count) : Cell(),
+             has_quality ? Cell(quantile(found.good_quality_error, 0.95)) : Cell()});
 }
 
 void measure(const Surface& surface, double noise, Table& table) {
@@ -78,7 +79,7 @@ void measure(const Surface& surface, double noise, Table& table) {
   const double near = 3 * surface.mean_edge();
   std::vector<std::vector<double>> truth;
   std::vector<Index> sources;
-  Found unfolded;
+  DistanceErrors unfolded;
   for (int s = 0; s < source_count; ++s) {
     const Index source = sources.emplace_back(surface.size() / 11 + s * (surface.size() / source_count));
     truth.push_back(distances(exact::exact_map(polyhedral, polyhedral.vertex_point(Vertex(source))), surface));
@@ -93,7 +94,7 @@ void measure(const Surface& surface, double noise, Table& table) {
   add_row(surface, noise, "unfolded", unfolded, table);
   for (Variant variant : all_variants) {
     const LogMapSolver solver(cloud.graph(), {.variant = variant});
-    Found found;
+    DistanceErrors found;
     for (int s = 0; s < source_count; ++s) {
       const LogMap map = solver.solve(cloud.source(Row(sources[s])).source);
       const RowLogMap rows = cloud.to_rows(map);

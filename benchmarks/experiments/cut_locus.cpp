@@ -23,8 +23,8 @@ std::array<double, 2> towards(const TangentGraph& graph, Index vertex, Index nei
 
 /// The tube unrolled about the source, and the number of edges from each vertex to the cut line, around the tube. A tube of
 /// flat quads is flat, so this is exact.
-struct Unrolled {
-  Unrolled(const Surface& surface, int around, Index source) {
+struct UnrolledTube {
+  UnrolledTube(const Surface& surface, int around, Index source) {
     const auto round = towards(surface.graph(), source, source + 1),
                along = towards(surface.graph(), source, source + around);
     const double side = 2 * radius * std::sin(std::numbers::pi / around);
@@ -58,7 +58,7 @@ double torn_share(const Surface& surface, std::span<const double> map) {
 void measure(int around, Table& table) {
   const Surface surface("tube", tube(around, radius));
   const Index source = surface.size() / around / 2 * around;
-  const Unrolled exact(surface, around, source);
+  const UnrolledTube exact(surface, around, source);
   for (const NamedMethod& method : log_map_methods()) {
     const auto map = method.make(surface.graph())->solve(source).coordinates;
     const double torn = torn_share(surface, map);

@@ -38,11 +38,11 @@ void add_row(const Surface& surface, const char* method, Cell where, const std::
 /// Relative errors of one method in rings around three sources, and over all vertices.
 void measure(const Surface& surface, const DistanceMethod& method, std::span<const Index> sources,
              std::span<const std::vector<double>> exact, Table& table) {
-  const methods::Method made = method.make(surface);
+  const methods::Method prepared = method.make(surface);
   std::vector<std::vector<double>> by_ring(ring_count);
   std::vector<double> all;
   for (std::size_t s = 0; s < sources.size(); ++s) {
-    const std::vector<double> distance = made->solve(sources[s]).distance;
+    const std::vector<double> distance = prepared->solve(sources[s]).distance;
     const std::vector<int> ring_of = rings(exact[s], ring_count);
     for (std::size_t i = 0; i < distance.size(); ++i)
       if (const double error = std::abs(distance[i] / exact[s][i] - 1);

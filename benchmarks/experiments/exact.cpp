@@ -16,7 +16,7 @@ namespace {
 
 constexpr int source_count = 3, path_count = 100;
 /// Above this number of vertices, CGAL's exact geodesics take minutes and gigabytes.
-constexpr Index most_for_cgal = 15000;
+constexpr Index max_for_cgal = 15000;
 
 /// Processor time of all threads.
 template <class Work>
@@ -27,7 +27,7 @@ double cpu_seconds(const Work& work) {
 }
 
 /// Results of maps with a tolerance.
-struct Tolerant {
+struct ToleranceResult {
   double seconds = 0, error = 0;  ///< seconds per map; largest relative error of a distance
   std::vector<double> vectors;    ///< relative errors of vectors
 };
@@ -46,9 +46,9 @@ std::vector<double> vector_errors(const Surface& surface, const LogMap& exact, c
   return errors;
 }
 
-Tolerant with_tolerance(const Surface& surface, const ExactGeodesics& geodesics, std::span<const Vertex> sources,
-                        std::span<const LogMap> exact) {
-  Tolerant result;
+ToleranceResult with_tolerance(const Surface& surface, const ExactGeodesics& geodesics, std::span<const Vertex> sources,
+                               std::span<const LogMap> exact) {
+  ToleranceResult result;
   for (std::size_t s = 0; s < sources.size(); ++s) {
     std::optional<LogMap> map;
     result.seconds +=
@@ -82,17 +82,17 @@ HeatRow with_heat(const Surface& surface, std::span<const Vertex> sources, std::
   return row;
 }
 
-struct Against {
+struct CgalComparison {
   Cell seconds, difference;
 };
 
-Against cgal([[maybe_unused]] const Surface& surface, [[maybe_unused]] Vertex source,
-             [[maybe_unused]] const LogMap& exact) {
-  Against against;
+CgalComparison cgal([[maybe_unused]] const Surface& surface, [[maybe_unused]] Vertex source,
+                    [[maybe_unused]] const LogMap& exact) {
+  CgalComparison cgal_result;
 #ifdef AHM_METHODS_CGAL
-  if (surface.size() > most_for_cgal) return against;
+  if (surface.size() > max_for_cgal) return cgal_result;
   std::vector<double> distance;
-  against.seconds = cpu_seconds(
+  cgal_result.seconds = cpu_seconds(
       [&] { distance = methods::exact_distance(surface.points(), surface.faces())->solve(source.index).distance; });
   double worst = 0, farthest = 0;
   for (std::size_t i = 0; i < distance.size(); ++i) {
@@ -100,9 +100,9 @@ Against cgal([[maybe_unused]] const Surface& surface, [[maybe_unused]] Vertex so
     farthest = std::max(farthest, distance[i]);
     worst = std::max(worst, std::abs(distance[i] - exact.distances()[i]));
   }
-  against.difference = worst / farthest;
+  cgal_result.difference = worst / farthest;
 #endif
-  return against;
+  return cgal_result;
 }
 
 /// Locally shortest paths between random vertices: milliseconds per path, and by which share they are longer than exact
@@ -144,8 +144,8 @@ void measure(const Surface& surface, Table& table) {
     map_seconds += cpu_seconds([&] { exact.push_back(geodesics->log_map(sources.back())); }) / source_count;
   }
   const HeatRow heat = with_heat(surface, sources, exact);
-  const Against against = cgal(surface, sources[0], exact[0]);
-  const Tolerant tolerant = with_tolerance(surface, *geodesics, sources, exact);
+  const CgalComparison cgal_result = cgal(surface, sources[0], exact[0]);
+  const ToleranceResult tolerant = with_tolerance(surface, *geodesics, sources, exact);
   const Paths paths = fast_paths(surface, *geodesics, sources, exact);
   table.add({surface.name(),
              surface.size(),
@@ -155,8 +155,8 @@ void measure(const Surface& surface, Table& table) {
              tolerant.error,
              quantile(tolerant.vectors, 0.5),
              quantile(tolerant.vectors, 0.95),
-             against.seconds,
-             against.difference,
+             cgal_result.seconds,
+             cgal_result.difference,
              heat.first,
              heat.further,
              quantile(heat.errors, 0.5),

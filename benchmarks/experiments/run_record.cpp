@@ -29,14 +29,14 @@ std::string proc_entry(const char* file, std::string_view key) {
 }
 
 /// Returns freed memory to the system and resets the peak memory on Linux. Elsewhere the peak is that of the whole process.
-void forget_peak() {
+void reset_peak() {
 #ifdef __GLIBC__
   malloc_trim(0);
 #endif
   std::ofstream("/proc/self/clear_refs") << 5;
 }
 
-/// Peak memory since `forget_peak`, MB.
+/// Peak memory since `reset_peak`, MB.
 double peak_since_megabytes() {
   const std::string peak = proc_entry("/proc/self/status", "VmHWM");
   return peak.empty() ? peak_megabytes() : std::stod(peak) * 1.024e-3;
@@ -72,7 +72,7 @@ void RunRecord::read() {
 }
 
 void RunRecord::run(const Experiment& experiment, const Settings& settings) {
-  forget_peak();
+  reset_peak();
   Table table({});
   const double time = seconds([&] { table = experiment.run(settings); });
   nlohmann::ordered_json entry{{"figure", experiment.figure},

@@ -16,24 +16,24 @@ void measure(const std::string& name, const Mesh& mesh, unsigned threads, Table&
   std::optional<Surface> surface;
   std::optional<LogMapSolver> solver;
   std::optional<methods::Method> vector_heat;
-  const double build = least_seconds([&] { surface.emplace(name, mesh, trimesh::MeshOptions{.threads = threads}); });
+  const double build = min_seconds([&] { surface.emplace(name, mesh, trimesh::MeshOptions{.threads = threads}); });
   const TangentGraph& graph = surface->graph();
-  const double factor = least_seconds([&] {
+  const double factor = min_seconds([&] {
     solver.emplace(graph, HeatOptions{.strategy = Strategy::global, .check_graph = false, .threads = threads});
   });
   const Index source = graph.size() / 2;
   auto further = [&](Variant variant) {
-    return least_seconds(
+    return min_seconds(
         [&] { solver->solve(Source::at_vertex(Vertex(source)), {.variant = variant, .threads = threads}); });
   };
   const double adaptive = further(Variant::adaptive), localized = further(Variant::localized);
   std::vector<Source> sources;
   for (Index s = 0; s < 32; ++s)
     sources.push_back(Source::at_vertex(Vertex(static_cast<Offset>(s) * graph.size() / 32)));
-  const double batch = least_seconds([&] { solver->solve(sources, {.threads = threads}); }) / 32;
+  const double batch = min_seconds([&] { solver->solve(sources, {.threads = threads}); }) / 32;
   solver.reset();
-  const double vector_factor = least_seconds([&] { vector_heat.emplace(methods::vector_heat_log(graph)); });
-  const double vector_further = least_seconds([&] { (*vector_heat)->solve(source); });
+  const double vector_factor = min_seconds([&] { vector_heat.emplace(methods::vector_heat_log(graph)); });
+  const double vector_further = min_seconds([&] { (*vector_heat)->solve(source); });
   table.add({name, graph.size(), build, factor, factor + adaptive, adaptive, factor + localized, localized, batch,
              vector_factor + vector_further, vector_further});
 }

@@ -36,7 +36,7 @@ std::vector<std::string> split(const std::string& line) {
   return cells;
 }
 
-std::vector<double> some_numbers(const Table& table, std::string_view name) {
+std::vector<double> nonempty_numbers(const Table& table, std::string_view name) {
   std::vector<double> numbers = table.numbers(name);
   if (numbers.empty()) throw InvalidArgument(fmt::format("Table: column '{}' contains no numbers", name));
   return numbers;
@@ -91,12 +91,12 @@ std::vector<double> Table::numbers(std::string_view name) const {
   return result;
 }
 
-double Table::largest(std::string_view name) const { return std::ranges::max(some_numbers(*this, name)); }
+double Table::largest(std::string_view name) const { return std::ranges::max(nonempty_numbers(*this, name)); }
 
-double Table::smallest(std::string_view name) const { return std::ranges::min(some_numbers(*this, name)); }
+double Table::smallest(std::string_view name) const { return std::ranges::min(nonempty_numbers(*this, name)); }
 
 double Table::mean(std::string_view name) const {
-  const std::vector<double> all = some_numbers(*this, name);
+  const std::vector<double> all = nonempty_numbers(*this, name);
   return std::accumulate(all.begin(), all.end(), 0.0) / static_cast<double>(all.size());
 }
 

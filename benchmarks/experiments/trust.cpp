@@ -37,13 +37,13 @@ constexpr double right = 0.1;
 constexpr double noise = 0.2;
 
 /// The errors of one map, with one entry per compared vertex.
-struct Found {
+struct MapErrors {
   std::vector<double> vector_error, distance_error;  ///< relative to the distance
   std::vector<double> quality;
 };
 
 /// The surface on which exact maps are computed.
-struct Ground {
+struct GroundTruth {
   std::string name;
   const exact::PolyhedralSurface& polyhedral;
   double unit;       ///< length unit of `polyhedral`, world units
@@ -51,7 +51,7 @@ struct Ground {
 };
 
 /// A discretization of the same surface: the compared points on the ground, and the row of the k-th one.
-struct View {
+struct ComparedSurface {
   std::string name;
   const ahm::Surface& surface;
   const std::vector<exact::MeshPoint>& points;
@@ -62,7 +62,8 @@ struct View {
 };
 
 /// Leaves out vertices nearer than two edges or 3 % of the largest distance, where vectors are short and edges few.
-Found compare(const Ground& ground, const exact::ExactMap& truth, const View& view, const LogMap& map) {
+MapErrors compare(const GroundTruth& ground, const exact::ExactMap& truth, const ComparedSurface& view,
+                  const LogMap& map) {
   const std::vector<double> quality = map_quality(view.surface.graph(), map);
   double farthest = 0;
   for (std::size_t k = 0; k < truth.targets(); ++k)
@@ -70,7 +71,7 @@ Found compare(const Ground& ground, const exact::ExactMap& truth, const View& vi
   const double near = std::max(2 * ground.mean_edge, 0.03 * farthest);
   std::vector<Complex> exact, ours;
   std::vector<double> away;
-  Found found;
+  MapErrors found;
   for (Index k = 0; k < view.size(); ++k) {
     const Vertex v = view.vertex(k);
     const double d = ground.unit * truth.target_distance(k);
@@ -102,7 +103,7 @@ Found compare(const Ground& ground, const exact::ExactMap& truth, const View& vi
 
 /// Area under the curve: how often, in a pair of a right and a wrong vector, the right one has the higher quality. Empty if
 /// all vectors are right or all are wrong.
-std::optional<double> area_under_curve(const Found& found) {
+std::optional<double> area_under_curve(const MapErrors& found) {
   std::vector<std::size_t> order(found.quality.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::sort(order.begin(), order.end(), [&](auto a, auto b) { return found.quality[a] > found.quality[b]; });
@@ -121,7 +122,7 @@ struct Shares {
   double right, trusted, right_among_trusted;
 };
 
-Shares shares_of(const Found& found) {
+Shares shares_of(const MapErrors& found) {
   double right_ones = 0, trusted = 0, both = 0;
   for (std::size_t k = 0; k < found.quality.size(); ++k) {
     const bool is_right = found.vector_error[k] < right, is_trusted = found.quality[k] >= trusted_quality;
@@ -131,13 +132,13 @@ Shares shares_of(const Found& found) {
   return {right_ones / all, trusted / all, trusted > 0 ? both / trusted : 1};
 }
 
-void append(Found& all, const Found& one) {
+void append(MapErrors& all, const MapErrors& one) {
   all.vector_error.insert(all.vector_error.end(), one.vector_error.begin(), one.vector_error.end());
   all.distance_error.insert(all.distance_error.end(), one.distance_error.begin(), one.distance_error.end());
   all.quality.insert(all.quality.end(), one.quality.begin(), one.quality.end());
 }
 
-void measure(const Ground& ground, const View& view, Table& table) {
+void measure(const GroundTruth& ground, const ComparedSurface& view, Table& table) {
   const PolarMapSolver polar(view.surface);
   const LogMapSolver heat(view.surface.graph());
   const Index size = view.size();
@@ -148,7 +149,7 @@ void measure(const Ground& ground, const View& view, Table& table) {
     truths.push_back(exact::exact_map(ground.polyhedral, view.points[sources.back()], {.targets = view.points}));
   }
   for (const Method method : {Method::polar, Method::heat}) {
-    Found all;
+    MapErrors all;
     double worst = 1, time = 0;
     for (int s = 0; s < source_count; ++s) {
       const Index source = sources[s];
@@ -157,7 +158,7 @@ void measure(const Ground& ground, const View& view, Table& table) {
         map = method == Method::polar ? polar.log_map(view.row(source))
                                       : heat.solve(view.surface.source(view.row(source)).source, {.threads = 1});
       });
-      const Found found = compare(ground, truths[s], view, *map);
+      const MapErrors found = compare(ground, truths[s], view, *map);
       if (found.quality.empty()) continue;
       worst = std::min(worst, shares_of(found).right_among_trusted);
       append(all, found);
@@ -172,7 +173,7 @@ void measure(const Ground& ground, const View& view, Table& table) {
 }
 
 /// Measures points as a cloud, if no point is removed or merged.
-void measure_points(const Ground& ground, std::string name, std::span<const Vec3> points,
+void measure_points(const GroundTruth& ground, std::string name, std::span<const Vec3> points,
                     const std::vector<exact::MeshPoint>& on_ground, Table& table) {
   const auto cloud = pointcloud::PointCloudSurface::build(points);
   if (cloud.graph().size() != std::ssize(points)) return;
@@ -180,7 +181,7 @@ void measure_points(const Ground& ground, std::string name, std::span<const Vec3
 }
 
 /// Noise also moves points along the surface, so the exact values are those of the nearest point of the mesh.
-void measure_noisy_points(const Ground& ground, const Surface& surface, Table& table) {
+void measure_noisy_points(const GroundTruth& ground, const Surface& surface, Table& table) {
   std::mt19937_64 random(7);
   std::normal_distribution<double> off(0, noise * surface.mean_edge());
   std::vector<Vec3> noisy(surface.points().begin(), surface.points().end());
@@ -194,7 +195,7 @@ void measure_noisy_points(const Ground& ground, const Surface& surface, Table& t
 
 void measure(const Surface& surface, Table& table) {
   const exact::PolyhedralSurface polyhedral = surface.polyhedron();
-  const Ground ground{surface.name(), polyhedral, surface.graph().length_unit(), surface.mean_edge()};
+  const GroundTruth ground{surface.name(), polyhedral, surface.graph().length_unit(), surface.mean_edge()};
   std::vector<exact::MeshPoint> vertices;
   for (Index i = 0; i < surface.size(); ++i) vertices.push_back(polyhedral.vertex_point(Vertex(i)));
   measure(ground,
@@ -213,8 +214,8 @@ void measure(const NamedPolygons& mesh, Table& table) {
   };
   const auto refined = build(Discretization::refined), polygons = build(Discretization::polygons);
   const FlatTriangles flat = refined.flat_triangles();
-  const Ground ground{mesh.name, flat.surface, flat.length_unit,
-                      refined.graph().mean_edge_length() * refined.graph().length_unit()};
+  const GroundTruth ground{mesh.name, flat.surface, flat.length_unit,
+                           refined.graph().mean_edge_length() * refined.graph().length_unit()};
   std::vector<Row> rows;
   std::vector<exact::MeshPoint> vertices;
   for (Index r = 0; r < mesh.vertices(); ++r)

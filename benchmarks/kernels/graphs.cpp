@@ -6,19 +6,19 @@ namespace ahm::bench {
 namespace {
 
 /// Keeps the last result, since Google Benchmark calls every function several times.
-template <class Made>
+template <class Value>
 class Last {
  public:
   template <class Make>
-  const Made& get(Index n, const Make& make) {
-    if (n != n_) made_.emplace(make());
+  const Value& get(Index n, const Make& make) {
+    if (n != n_) value_.emplace(make());
     n_ = n;
-    return *made_;
+    return *value_;
   }
 
  private:
   Index n_ = -1;
-  std::optional<Made> made_;
+  std::optional<Value> value_;
 };
 
 }  // namespace

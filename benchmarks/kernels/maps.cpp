@@ -30,7 +30,7 @@ const ahm::LogMapSolver& solver_of(const ahm::TangentGraph& graph) {
 }
 
 /// The solves of a map only: A and B for the source, then A for two columns (adaptive) or B for one (localized).
-void solves_alone(const ahm::HeatOperators& heat, Variant variant, std::vector<double>& X) {
+void run_solves(const ahm::HeatOperators& heat, Variant variant, std::vector<double>& X) {
   const auto n = static_cast<std::size_t>(heat.size());
   auto point = [&](std::size_t size) {
     std::fill_n(X.begin(), size, 0.0);
@@ -51,7 +51,7 @@ void map(benchmark::State& state, Shape shape, Variant variant) {
   for (auto _ : state) benchmark::DoNotOptimize(solver.solve(source, {.variant = variant, .threads = 1}));
   std::vector<double> X(2 * static_cast<std::size_t>(graph.size()));
   const double whole = median_cpu_seconds([&] { solver.solve(source, {.variant = variant, .threads = 1}); });
-  const double solves = median_cpu_seconds([&] { solves_alone(solver.operators(), variant, X); });
+  const double solves = median_cpu_seconds([&] { run_solves(solver.operators(), variant, X); });
   state.counters["outside solves"] = 1 - solves / whole;
   state.SetItemsProcessed(state.iterations() * graph.size());
 }

@@ -13,25 +13,25 @@ namespace {
 using ahm::Index, ahm::Ordering, ahm::bench::report_bandwidth, ahm::bench::report_flops, ahm::bench::run,
     ahm::bench::Shape;
 
-/// The factor of A or of B, kept between calls.
+/// The factor of A or of B, cached between calls.
 const ahm::CholeskyFactor& factor_of(const ahm::TangentGraph& graph, Shape shape, bool scalar) {
-  struct Kept {
+  struct CachedFactor {
     Shape shape;
     Index n;
     bool scalar;
     ahm::CholeskyFactor factor;
   };
-  static std::unique_ptr<Kept> kept;
-  if (!kept || kept->shape != shape || kept->n != graph.size() || kept->scalar != scalar) {
-    kept.reset();
+  static std::unique_ptr<CachedFactor> cached;
+  if (!cached || cached->shape != shape || cached->n != graph.size() || cached->scalar != scalar) {
+    cached.reset();
     const double h = graph.mean_edge_length();
     const std::vector<double> tau(static_cast<std::size_t>(graph.size()), h * h);
     const ahm::AssembledOperators matrices = ahm::assemble(graph, tau, 1.0 / (h * h));
     const ahm::SymbolicCholesky symbolic(matrices.A, Ordering::amd);
-    kept = std::make_unique<Kept>(shape, graph.size(), scalar,
-                                  ahm::CholeskyFactor(scalar ? matrices.A : matrices.B, symbolic, "benchmark"));
+    cached = std::make_unique<CachedFactor>(
+        shape, graph.size(), scalar, ahm::CholeskyFactor(scalar ? matrices.A : matrices.B, symbolic, "benchmark"));
   }
-  return kept->factor;
+  return cached->factor;
 }
 
 /// Bytes of traffic: the factor once forwards and once backwards, the right-hand sides in and out. `point` is the

@@ -20,7 +20,7 @@ void check_curve(const Source& curve, const TangentGraph& graph) {
 }
 
 /// Whether heat has reached a vertex of the field.
-bool arrived(std::span<const double> unit_field, std::size_t vertex, std::size_t d) {
+bool has_heat(std::span<const double> unit_field, std::size_t vertex, std::size_t d) {
   const auto vector = unit_field.subspan(vertex * d, d);
   return std::any_of(vector.begin(), vector.end(), [](double x) { return x != 0; });
 }
@@ -41,7 +41,7 @@ Result SignedHeat::solve(Index source) const {
   normalize(X, graph_.dimension());
   // III. Integrate.
   return {{}, distances_from(integration_.integrate(X, source), source, graph_.length_unit(), [&](std::size_t i) {
-            return static_cast<Index>(i) == source || arrived(X, i, d);
+            return static_cast<Index>(i) == source || has_heat(X, i, d);
           })};
 }
 
@@ -66,7 +66,7 @@ std::vector<double> SignedHeat::signed_distance(const Source& curve) const {
     weights += curve.weights()[k] / most;
   }
   mean /= weights;
-  for (std::size_t i = 0; i < f.size(); ++i) f[i] = arrived(X, i, 2) ? (f[i] - mean) * graph_.length_unit() : nan;
+  for (std::size_t i = 0; i < f.size(); ++i) f[i] = has_heat(X, i, 2) ? (f[i] - mean) * graph_.length_unit() : nan;
   return f;
 }
 

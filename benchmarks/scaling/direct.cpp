@@ -149,7 +149,7 @@ std::vector<double> by_elimination(Index n, Variant variant) {
 }
 
 /// The numbers of `timed` for LU, and the largest difference of the two maps as a share of the longest vector.
-std::vector<double> directly(Index n, Variant variant) {
+std::vector<double> by_lu(Index n, Variant variant) {
   const auto surface = icosphere_surface(n);
   const CsrGraph& graph = surface.graph();
   std::optional<DirectSolver> solver;
@@ -179,7 +179,7 @@ Table direct(const Settings& settings) {
   for (const Index n : sizes(settings, 600, {10000, 40000}))
     for (const Variant variant : all_variants) {
       const std::vector<double> ours = in_own_process(3, [&] { return by_elimination(n, variant); }),
-                                lu = in_own_process(4, [&] { return directly(n, variant); });
+                                lu = in_own_process(4, [&] { return by_lu(n, variant); });
       table.add({n, std::string(to_string(variant)), ours[0], lu[0], lu[0] / ours[0], ours[1], lu[1], lu[1] / ours[1],
                  ours[2], lu[2], lu[2] / ours[2], lu[3]});
     }

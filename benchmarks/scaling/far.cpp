@@ -20,19 +20,19 @@ namespace {
 
 constexpr Index around = 40;
 
-struct Marched {
+struct MarchResult {
   LogMap map;
   double time;
 };
 
-Marched march_from(const TangentGraph& graph, Vertex source, const Settings& settings) {
+MarchResult march_from(const TangentGraph& graph, Vertex source, const Settings& settings) {
   const LogMapSolver solver(graph, {.strategy = Strategy::march, .check_graph = false, .threads = settings.threads});
   std::optional<LogMap> map;
   const double time = seconds([&] { map.emplace(solver.solve(Source::at_vertex(source), {.spread = false})); });
   return {std::move(*map), time};
 }
 
-std::vector<double> row(const Marched& marched, double distance, double on_line, double elsewhere) {
+std::vector<double> row(const MarchResult& marched, double distance, double on_line, double elsewhere) {
   return {static_cast<double>(marched.map.size()),
           marched.time,
           static_cast<double>(marched.map.march().bands),
@@ -47,7 +47,7 @@ std::vector<double> row(const Marched& marched, double distance, double on_line,
 std::vector<double> tube(Index n, const Settings& settings) {
   const Index rings = std::max<Index>(n / around, 2), near = std::min<Index>(100, rings / 100 + 2);
   const CsrGraph graph(test::tube(rings, around));
-  const Marched marched = march_from(graph, Vertex(0), settings);
+  const MarchResult marched = march_from(graph, Vertex(0), settings);
   double distance = 0, on_line = 0, elsewhere = 0;
   for (Index ring = near; ring < rings; ++ring)
     for (Index k = 0; k < around; ++k) {
@@ -65,7 +65,7 @@ std::vector<double> tube(Index n, const Settings& settings) {
 std::vector<double> cube(Index n, const Settings& settings) {
   const auto side = static_cast<Index>(std::lround(std::cbrt(n)));
   const grid::GridGraph graph({.shape = {side, side, side}, .spacing = {1, 1, 1}});
-  const Marched marched = march_from(graph, Vertex(0), settings);
+  const MarchResult marched = march_from(graph, Vertex(0), settings);
   double distance = 0, vector = 0;
   for (Index i = 0; i < graph.size(); ++i) {
     const std::array<double, 3> exact{static_cast<double>(i % side), static_cast<double>(i / side % side),

@@ -35,7 +35,7 @@ struct Cost {
 
 /// Median of five runs, or of three if a run takes longer than 1 s; a single run if it takes longer than 10 s.
 template <class Work>
-double usual_seconds(const Work& work) {
+double median_seconds(const Work& work) {
   std::vector<double> times{cpu_seconds_of(work)};
   const std::size_t runs = times[0] < 1 ? 5 : times[0] < 10 ? 3 : 1;
   while (times.size() < runs) times.push_back(cpu_seconds_of(work));
@@ -123,11 +123,11 @@ std::vector<double> measure(Index n, const Speeds& speeds) {
   std::vector<double> numbers{static_cast<double>(rows)};
   const auto add = [&](double seconds, double least) { numbers.insert(numbers.end(), {seconds, least}); };
 
-  add(usual_seconds([&] { io::read(file); }), (file_bytes(file) + input.bytes()) / copy);
+  add(median_seconds([&] { io::read(file); }), (file_bytes(file) + input.bytes()) / copy);
 
   const auto surface = input.surface();
   const CsrGraph& graph = surface.graph();
-  add(usual_seconds([&] { input.surface(); }), (input.bytes() + bytes(graph.data())) / copy);
+  add(median_seconds([&] { input.surface(); }), (input.bytes() + bytes(graph.data())) / copy);
 
   double factor_bytes = 0;
   {
@@ -136,14 +136,14 @@ std::vector<double> measure(Index n, const Speeds& speeds) {
     const auto operators = [&] { return assemble(graph, tau, 1.0 / (h * h)); };
     AssembledOperators matrices = operators();
     const double both = bytes(matrices.A) + bytes(matrices.B);
-    add(usual_seconds(operators), (both + 28.0 * static_cast<double>(graph.edge_count()) + 16.0 * rows) / copy);
+    add(median_seconds(operators), (both + 28.0 * static_cast<double>(graph.edge_count()) + 16.0 * rows) / copy);
     const auto analyzed = [&] { return SymbolicCholesky(matrices.A, Ordering::amd); };
-    add(usual_seconds(analyzed), (bytes(matrices.A.column_begin) + bytes(matrices.A.rows)) / copy);
+    add(median_seconds(analyzed), (bytes(matrices.A.column_begin) + bytes(matrices.A.rows)) / copy);
     const SymbolicCholesky symbolic = analyzed();
     const double flops = factor_size(matrices.A, Ordering::amd).flops;
     for (const bool scalar : {true, false}) {
       const auto factored = [&] { return CholeskyFactor(scalar ? matrices.A : matrices.B, symbolic, "benchmark"); };
-      add(usual_seconds(factored), scalar ? flops / dgemm : 4 * flops / zgemm);
+      add(median_seconds(factored), scalar ? flops / dgemm : 4 * flops / zgemm);
       factor_bytes += static_cast<double>(factored().bytes());
     }
   }
@@ -155,12 +155,12 @@ std::vector<double> measure(Index n, const Speeds& speeds) {
   std::optional<LogMap> map;
   add(cpu_seconds_of([&] { map.emplace(solver.solve(source, {.threads = 1})); }), solves);
   for (const Variant variant : {Variant::adaptive, Variant::localized})
-    add(usual_seconds([&] { solver.solve(source, {.variant = variant, .threads = 1}); }), solves);
+    add(median_seconds([&] { solver.solve(source, {.variant = variant, .threads = 1}); }), solves);
 
   table.add("distance", map->distances());
   table.add("status", map->status());
   const double columns = input.bytes() + 9.0 * rows;
-  const double writing = usual_seconds([&] { io::write(file, table); });
+  const double writing = median_seconds([&] { io::write(file, table); });
   add(writing, (columns + file_bytes(file)) / copy);
   return numbers;
 }

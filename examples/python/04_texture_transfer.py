@@ -20,16 +20,16 @@ def main():
     egg = ahm.TriangleMesh(V * [1, 1, 1.25], F)
     top_of_ball, top_of_egg = int(np.argmax(V[:, 2])), [0.0, 0.0, 1.25]
     # Both maps start at the top, with the same u axis.
-    giver = ahm.log_map(ball, top_of_ball, u_axis=[1, 0, 0], radius=1.2)
-    taker = ahm.log_map(egg, top_of_egg, u_axis=[1, 0, 0], radius=1.0)
+    map_of_ball = ahm.log_map(ball, top_of_ball, u_axis=[1, 0, 0], radius=1.2)
+    map_of_egg = ahm.log_map(egg, top_of_egg, u_axis=[1, 0, 0], radius=1.0)
 
-    texture = np.cos(12 * giver.uv[:, 0]) * np.cos(12 * giver.uv[:, 1])  # of the rows of the ball
-    found = giver.inverse(taker.uv[taker.ok])
+    texture = np.cos(12 * map_of_ball.uv[:, 0]) * np.cos(12 * map_of_ball.uv[:, 1])  # of the rows of the ball
+    found = map_of_ball.inverse(map_of_egg.uv[map_of_egg.ok])
     values = np.einsum("kc,kc->k", found.barycentric, np.nan_to_num(texture)[found.triangle])
     painted = np.full(len(egg), np.nan)
-    painted[taker.ok] = np.where(found.valid, values, np.nan)
+    painted[map_of_egg.ok] = np.where(found.valid, values, np.nan)
 
-    uv = taker.uv[taker.ok]
+    uv = map_of_egg.uv[map_of_egg.ok]
     error = np.abs(values - np.cos(12 * uv[:, 0]) * np.cos(12 * uv[:, 1]))[found.valid]
     print(f"{np.isfinite(painted).sum()} of {len(egg)} rows painted, {taker}")
     print(f"interpolation error of the texture: mean {error.mean():.4f}, largest {error.max():.4f}")

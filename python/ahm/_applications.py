@@ -120,7 +120,7 @@ def cells(surface: Any, sources: Any, *, method: Optional[str] = None, tolerance
 
 def _unfold_or_exact(surface: Any, method: Optional[str]) -> str:
     if method is None:
-        return "exact" if isinstance(surface, ExactGeodesics) else "unfold"
+        return "exact" if isinstance(getattr(surface, "_solver", surface), ExactGeodesics) else "unfold"
     return arguments.choice(method, "method", ("unfold", "exact"))
 
 

@@ -8,7 +8,7 @@ _Indices = NDArray[np.int32]
 _Offsets = NDArray[np.int64]
 _Bytes = NDArray[np.uint8]
 _Options = Dict[str, Any]
-_Places = Tuple[Any, ...]  # name, single, kinds, indices, counts, values
+_Places = Tuple[Any, ...]  # name, single, kinds, indices, counts, values: see `places` in src/body.hpp
 _Report = Optional[Callable[[str, float], Any]]
 _Curve = Tuple[_Doubles, _Indices, Any, float, bool]
 

@@ -24,7 +24,7 @@ def distance(surface: Any, sources: Any, *, targets: Any = None, method: str = "
         rows require method "exact".
     method : "unfold" (default): a wavefront over the triangles, best for distances on meshes. "heat": the distance of a log map
         by the heat method, smooth, best on noise. "exact": exact on the flat triangles of a mesh. On clouds, grids and graphs,
-        "heat" takes one solve each with A and B and smooths over about one edge half-way between sources. On meshes it uses a
+        "heat" takes one solve each with A and B and smooths over about one edge midway between sources. On meshes it uses a
         wavefront, too.
     radius : rows beyond this distance get NaN; world units. Not for method "heat".
     tolerance : maximum relative error of exact distances, as in `ExactGeodesics`.

@@ -40,8 +40,8 @@ def geodesic_path(surface: Any, stops: Any, to: Any = None, *, closed: bool = Fa
     closed : whether the path returns to the first stop.
     fast : locally shortest paths from stop to stop, in nearly linear time. A shorter path may exist, for example on the
         other side of a hill.
-    taut : pull the path taut, so that it is locally shortest everywhere. It then no longer passes through the inner stops;
-        only the ends are fixed. For closed paths see `geodesic_loop`.
+    taut : pull the path taut, so that it is locally shortest everywhere. Only its ends are fixed; it leaves the
+        inner stops. For closed paths see `geodesic_loop`.
     progress : as in `LogMapSolver`.
 
     >>> import ahm

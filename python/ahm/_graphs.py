@@ -82,7 +82,7 @@ class Graph(Surface):
     logs : (e, d) logarithms: position of neighbor j in the frame of i, in units of `length_unit`.
     transports : (e, 2) (cos, sin), or (e,) complex, both for d = 2; or (e, d, d). They take components in the frame of j to
         components in the frame of i.
-    masses : (n,) dual areas or volumes, > 0, in units of `length_unit`^d.
+    masses : (n,) dual areas or volumes, > 0, in units of `length_unit` to the power d.
     frames : (n, 4, 3) origin, x axis, y axis and normal of every vertex in space, world units; or None.
     mean_edge_length : in units of `length_unit`; None: the mean of |logs|.
     length_unit : length of 1 in `logs` and `mean_edge_length`, world units. Results are in world units.

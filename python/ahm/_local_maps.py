@@ -28,7 +28,8 @@ class PaddedMaps(NamedTuple):
 class LocalMaps:
     """Local maps in compressed rows. Returned by `local_maps`.
 
-    Source s has the entries indptr[s] : indptr[s + 1], one per neighbor, nearest first. The source itself is its first neighbor.
+    Source s has the entries indptr[s] : indptr[s + 1], one per neighbor, nearest first. A source that is a row
+    is its own first neighbor.
 
     indptr : (s + 1,) int64 offsets of the sources in the other arrays.
     indices : (e,) int32 rows of the neighbors.
@@ -136,7 +137,7 @@ def local_maps(surface: Any, radius: Optional[float] = None, k: Optional[int] = 
                t_coef: float = 1.0, variant: str = "adaptive", threads: int = 0, progress: Progress = None) -> LocalMaps:
     """Log maps within a radius, or of the k nearest rows, around every row or around `sources`.
 
-    Time and memory depend on these neighborhoods, however large the surface is.
+    Time and memory depend only on the size of these neighborhoods.
 
     surface : a `Surface`, a solver, or what `ahm.surface` takes.
     radius : radius of the maps, > 0, world units; None: large enough for k entries.
@@ -191,8 +192,8 @@ def local_stroke(surface: Any, points: Any, radius: float, *, closed: bool = Fal
                  t_coef: float = 1.0, variant: str = "adaptive", progress: Progress = None) -> LocalStroke:
     """Coordinates along a curve, for the rows within a radius only.
 
-    Time and memory depend on this neighborhood, however large the surface is. Distances are measured from the nearest sample of
-    the curve; samples are half an edge apart.
+    Time and memory depend only on the size of this neighborhood. Distances are measured from the nearest sample of the curve;
+    samples are half an edge apart.
 
     surface, radius, margin, t_coef, variant, progress : as in `local_maps`.
     points, closed, shape : as in `stroke`.

@@ -1,4 +1,4 @@
-"""Files of meshes and clouds as arrays, as potpourri3d reads and writes them."""
+"""Reads and writes files of meshes and clouds as arrays, with the signatures of potpourri3d."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from . import _core
 
 
 def read_mesh(filename: Any) -> Tuple[np.ndarray, np.ndarray]:
-    """(n, 3) vertices and (m, 3) triangles of a file.
+    """Reads a triangle mesh: (n, 3) vertices and (m, 3) triangles.
 
     >>> import ahm, ahm.potpourri3d as pp3d, tempfile
     >>> with tempfile.NamedTemporaryFile(suffix=".ply") as file:
@@ -22,17 +22,17 @@ def read_mesh(filename: Any) -> Tuple[np.ndarray, np.ndarray]:
     >>> V.shape, F.shape
     ((12, 3), (12, 3))
 
-    Raises IoError (an OSError) naming the file; ValueError where it holds no such mesh.
+    Raises IoError (an OSError) naming the file; ValueError if it contains no such mesh.
     """
     got = _core.read_file(arguments.file_name(filename, "filename"))
     begin = got["face_begin"]
     if begin is None or not (np.diff(begin) == 3).all():
-        raise ValueError(f"filename: {os.fspath(filename)} holds no triangle mesh")
+        raise ValueError(f"filename: {os.fspath(filename)} contains no triangle mesh")
     return got["points"], got["face_vertices"].reshape(-1, 3)
 
 
 def read_polygon_mesh(filename: Any) -> Tuple[np.ndarray, List[List[int]]]:
-    """(n, 3) vertices and the corners of every face of a file.
+    """Reads a polygon mesh: (n, 3) vertices, and a list of the corners of every face.
 
     >>> import ahm.potpourri3d as pp3d, tempfile
     >>> with tempfile.NamedTemporaryFile(suffix=".off") as file:
@@ -40,17 +40,17 @@ def read_polygon_mesh(filename: Any) -> Tuple[np.ndarray, List[List[int]]]:
     ...     pp3d.read_polygon_mesh(file.name)[1]
     [[0, 1, 2, 3]]
 
-    Raises IoError (an OSError) naming the file; ValueError where it holds no such mesh.
+    Raises IoError (an OSError) naming the file; ValueError if it contains no such mesh.
     """
     got = _core.read_file(arguments.file_name(filename, "filename"))
     begin, corners = got["face_begin"], got["face_vertices"]
     if begin is None:
-        raise ValueError(f"filename: {os.fspath(filename)} holds no faces")
+        raise ValueError(f"filename: {os.fspath(filename)} contains no faces")
     return got["points"], [corners[b:e].tolist() for b, e in zip(begin[:-1], begin[1:])]
 
 
 def read_point_cloud(filename: Any) -> np.ndarray:
-    """(n, 3) points of a file.
+    """Reads a point cloud: (n, 3) points.
 
     >>> import ahm.potpourri3d as pp3d, tempfile
     >>> with tempfile.NamedTemporaryFile(suffix=".xyz") as file:
@@ -64,7 +64,9 @@ def read_point_cloud(filename: Any) -> np.ndarray:
 
 
 def write_mesh(V: Any, F: Any, filename: Any, UV_coords: Any = None, UV_type: Optional[str] = None) -> None:
-    """Writes .obj, .off or .ply (text). UV_type: "per-vertex" (n, 2) or "per-corner" (corners, 2), .obj only.
+    """Writes a mesh to an .obj, .off or .ply (text) file. The file is written completely or not at all.
+
+    UV_coords are written to .obj files only. UV_type is "per-vertex" for shape (n, 2), "per-corner" for shape (corners, 2).
 
     >>> import ahm.potpourri3d as pp3d, tempfile
     >>> with tempfile.NamedTemporaryFile(suffix=".obj") as file:
@@ -72,16 +74,15 @@ def write_mesh(V: Any, F: Any, filename: Any, UV_coords: Any = None, UV_type: Op
     ...     pp3d.read_mesh(file.name)[1].tolist()
     [[0, 1, 2]]
 
-    Raises ValueError (a shape; a row out of range), NotImplementedError (another format), OSError; a file is written whole or
-    not at all.
+    Raises ValueError (wrong shape; a row out of range), NotImplementedError (another format), OSError.
     """
     points = arguments.floats(V, "V", (None, 3))
     faces = [arguments.integers(f, f"F[{k}]", 1, 0, len(points) - 1).tolist() for k, f in enumerate(F)]
     ending = _ending(filename)
     if (UV_coords is None) != (UV_type is None):
-        raise ValueError("UV_type: goes with UV_coords, and the other way round")
+        raise ValueError("UV_type: pass UV_type and UV_coords together")
     if UV_type is not None and (UV_type not in ("per-vertex", "per-corner") or ending != ".obj"):
-        raise NotImplementedError("UV_type: 'per-vertex' and 'per-corner' can be written, to .obj files")
+        raise NotImplementedError("UV_type: must be 'per-vertex' or 'per-corner', and the file must be .obj")
     rows = [" ".join(repr(float(x)) for x in p) for p in points]
     if ending == ".obj":
         lines = ["v " + row for row in rows] + _obj_faces(faces, UV_coords, UV_type, len(points))
@@ -91,12 +92,12 @@ def write_mesh(V: Any, F: Any, filename: Any, UV_coords: Any = None, UV_type: Op
         lines = ["ply", "format ascii 1.0", *_ply_points(len(rows)), f"element face {len(faces)}",
                  "property list uchar int vertex_indices", "end_header", *rows, *(_counted(f) for f in faces)]
     else:
-        raise NotImplementedError(f"filename: {ending or 'no ending'} cannot be written; .obj, .off and .ply can")
+        raise NotImplementedError(f"filename: format {ending or 'without extension'} is not supported; use .obj, .off or .ply")
     _write(filename, lines)
 
 
 def write_point_cloud(V: Any, filename: Any) -> None:
-    """Writes .ply (text), .obj or .xyz.
+    """Writes a point cloud to a .ply (text), .obj or .xyz file.
 
     >>> import ahm.potpourri3d as pp3d, tempfile
     >>> with tempfile.NamedTemporaryFile(suffix=".xyz") as file:
@@ -109,7 +110,7 @@ def write_point_cloud(V: Any, filename: Any) -> None:
     rows = [" ".join(repr(float(x)) for x in p) for p in arguments.floats(V, "V", (None, 3))]
     ending = _ending(filename)
     if ending not in (".ply", ".obj", ".xyz"):
-        raise NotImplementedError(f"filename: {ending or 'no ending'} cannot be written; .ply, .obj and .xyz can")
+        raise NotImplementedError(f"filename: format {ending or 'without extension'} is not supported; use .ply, .obj or .xyz")
     head = ["ply", "format ascii 1.0", *_ply_points(len(rows)), "end_header"] if ending == ".ply" else []
     _write(filename, head + [("v " if ending == ".obj" else "") + row for row in rows])
 
@@ -120,7 +121,7 @@ def _ending(filename: Any) -> str:
 
 def _write(filename: Any, lines: Sequence[str]) -> None:
     name = os.path.realpath(os.fsdecode(arguments.file_name(filename, "filename")))
-    part = f"{name}.{os.getpid()}.part"  # renamed when it is whole
+    part = f"{name}.{os.getpid()}.part"  # renamed when it is complete
     try:
         with open(part, "x", encoding="ascii") as file:
             file.write("\n".join(lines) + "\n")

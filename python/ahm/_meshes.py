@@ -14,18 +14,18 @@ from ._surfaces import Surface
 
 
 class TriangleMesh(Surface):
-    """A triangle mesh: intrinsic Delaunay triangulation, vertex tangent spaces, cotangent weights.
+    """A triangle mesh as a surface: intrinsic Delaunay triangulation, tangent spaces at the vertices, cotangent weights.
 
     vertices : (n, 3) positions, world units.
-    faces : (m, 3) rows of the vertices.
-    delaunay : flip edges until all are Delaunay; the result still refers to the input mesh.
-    clamp_weights : keep cotangent weights in [0, 1e4].
-    non_manifold : "error", or "split": cut the mesh open where more than two faces meet in an edge.
-    threads : 0: one per core. No result depends on it.
-    progress : None, True (a bar), or a callable (stage, fraction).
+    faces : (m, 3) rows of the corners of every triangle.
+    delaunay : flip edges until all are Delaunay. Results still refer to the input mesh.
+    clamp_weights : clamp cotangent weights to [0, 1e4].
+    non_manifold : treatment of nonmanifold edges and vertices. "error": raise. "split": cut the mesh open there.
+    threads : number of threads; 0: one per core. No result depends on it.
+    progress : None, True (a progress bar), or a callable that takes (stage, fraction).
 
     Raises InvalidGeometry (a ValueError) naming the elements: an index out of range, a repeated vertex, a duplicate face, a
-    coordinate that is not finite, a non-manifold edge or vertex; ResourceExhausted (a MemoryError).
+    coordinate that is not finite, a nonmanifold edge or vertex. Raises ResourceExhausted (a MemoryError).
 
     >>> import ahm
     >>> mesh = ahm.TriangleMesh(*ahm.shapes.sphere(3))
@@ -38,7 +38,7 @@ class TriangleMesh(Surface):
         points = arguments.floats(vertices, "vertices", (None, 3))
         triangles = arguments.integers(faces, "faces", 2)
         if triangles.shape[1] != 3:
-            raise ValueError(f"faces: shape (m, 3) is needed, not {triangles.shape}; PolygonMesh takes other polygons")
+            raise ValueError(f"faces: expected shape (m, 3), got {triangles.shape}; use PolygonMesh for other polygons")
         self._options = checked(delaunay=delaunay, clamp_weights=clamp_weights, non_manifold=non_manifold,
                                 threads=threads)
         with reporting(progress) as report:
@@ -48,12 +48,12 @@ class TriangleMesh(Surface):
 
     @property
     def vertices(self) -> np.ndarray:
-        """The same as `points`."""
+        """(n, 3) positions of the vertices, world units; the same array as `points`."""
         return self.points
 
     @property
     def faces(self) -> np.ndarray:
-        """(m, 3) int32 as given; read-only, not a copy."""
+        """(m, 3) int32 rows of the corners of every triangle of the input; a read-only view."""
         return self._body.faces()[1].reshape(-1, 3)
 
     @property
@@ -71,10 +71,10 @@ class PolygonMesh(Surface):
     """A mesh of polygons with any number of corners, planar or not.
 
     vertices : (n, 3) positions, world units.
-    faces : a list of lists of rows, or an (m, c) array.
-    discretization : "automatic": refined, unless faces are twisted; "refined": into triangles, with one virtual vertex inside
-        every face; "polygons": as they are [BHKB20].
-    delaunay, clamp_weights, non_manifold, threads, progress : as of `TriangleMesh`.
+    faces : rows of the corners of every face, as a list of lists, or as an (m, c) array if all faces have c corners.
+    discretization : "refined": triangles, with one virtual vertex inside every face that is not a triangle. "polygons": a
+        Laplacian of the polygons themselves [BHKB20]. "automatic": "refined", or "polygons" if a face is twisted.
+    delaunay, clamp_weights, non_manifold, threads, progress : as in `TriangleMesh`.
 
     Raises as `TriangleMesh`.
 
@@ -97,12 +97,12 @@ class PolygonMesh(Surface):
 
     @property
     def vertices(self) -> np.ndarray:
-        """The same as `points`."""
+        """(n, 3) positions of the vertices, world units; the same array as `points`."""
         return self.points
 
     @property
     def faces(self) -> List[np.ndarray]:
-        """Views of the corners of every face, int32, as given."""
+        """Rows of the corners of every face of the input: a list of int32 arrays, which are views."""
         begin, corners = self._body.faces()
         return [corners[b:e] for b, e in zip(begin[:-1], begin[1:])]
 
@@ -123,14 +123,14 @@ class PolygonMesh(Surface):
 
 
 class Compressed(NamedTuple):
-    """Polygons in compressed rows, inside this package."""
+    """Polygons in compressed rows, for use inside this package."""
 
     begin: np.ndarray
     corners: np.ndarray
 
 
 def as_faces(begin: np.ndarray, corners: np.ndarray) -> Any:
-    """(m, c) where all faces have as many corners, else a list; views."""
+    """Faces as an (m, c) array if all have c corners, otherwise as a list of arrays; views."""
     counts = np.diff(begin)
     if len(counts) and (counts == counts[0]).all():
         return corners.reshape(-1, counts[0])
@@ -144,7 +144,7 @@ def polygons(faces: Any) -> Compressed:
         whole = arguments.integers(faces, "faces", 2)
         return Compressed(np.arange(len(whole) + 1, dtype=np.int64) * whole.shape[1], whole.reshape(-1))
     if isinstance(faces, (str, bytes)) or not hasattr(faces, "__len__"):
-        raise TypeError(f"faces: a list of lists of rows is needed, not {arguments.describe(faces)}")
+        raise TypeError(f"faces: expected a list of lists of rows, got {arguments.describe(faces)}")
     lists = [arguments.integers(face, f"faces[{f}]", 1) if len(np.shape(face)) != 1 or len(face) else np.empty(0, np.int32)
              for f, face in enumerate(faces)]
     begin = np.concatenate([[0], np.cumsum([len(face) for face in lists])]).astype(np.int64)

@@ -1,4 +1,4 @@
-"""Options that several functions take: checked, and handed on where they are given."""
+"""Checks the options that several functions share."""
 
 from __future__ import annotations
 
@@ -72,5 +72,5 @@ CHECKS: Dict[str, Callable[[Any, str], Any]] = {
 
 
 def checked(**given: Any) -> Dict[str, Any]:
-    """Those that are not None; the others keep their default."""
+    """Checks the options that are not None and returns them. The others keep their defaults in C++."""
     return {name: CHECKS[name](value, name) for name, value in given.items() if value is not None}

@@ -1,4 +1,4 @@
-"""Sources and targets as people give them: rows, positions, points in faces and on edges."""
+"""Checks sources and targets, and packs them into arrays: rows, positions, points in faces and on edges."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ import numpy as np
 
 from . import _arguments as arguments
 
-ROW, POSITION, IN_FACE, ON_EDGE = range(4)  # as the C++ side counts them
+ROW, POSITION, IN_FACE, ON_EDGE = range(4)  # the same numbers as in src/body.cpp
 
 
 class Places:
-    """Points of one surface, collected and checked, in the order given."""
+    """Collects and checks points of one surface, in the order of the input."""
 
     def __init__(self, name: str, single: bool, surface: Any) -> None:
         self.name, self.single, self.surface = name, single, surface
@@ -36,14 +36,14 @@ class Places:
             self._add(ON_EDGE, *self._on_edge(*value))
         elif (isinstance(value, (str, bytes, dict, set)) or not hasattr(value, "__len__") or getattr(value, "ndim", 1) == 0
               or (isinstance(value, tuple) and any(hasattr(part, "__len__") for part in value))):
-            raise TypeError(f"{self.here()}: a row, a position, (face, barycentric) or ((row, row), t) is needed, "
-                            f"not {arguments.describe(value)}")
+            raise TypeError(f"{self.here()}: expected a row, a position, (face, barycentric) or ((row, row), t), "
+                            f"got {arguments.describe(value)}")
         else:
             given = arguments.array(value, self.here())
             if self.name == "source" and given.dtype.kind in "iu" and given.shape != (self.surface._position_width,):
-                raise ValueError(f"source: one row or one position is needed, not shape {given.shape}; log_maps takes several")
+                raise ValueError(f"source: expected one row or one position, got shape {given.shape}; use log_maps for several")
             if given.ndim != 1:
-                raise ValueError(f"{self.here()}: a position has {self.surface._position_width} numbers, not shape {given.shape}")
+                raise ValueError(f"{self.here()}: expected a position of {self.surface._position_width} numbers, got shape {given.shape}")
             self._add(POSITION, -1, positions(given[None], self.where, len(self.kinds), self.surface)[0])
 
     def packed(self) -> tuple:
@@ -71,12 +71,12 @@ class Places:
         given = arguments.array(barycentric, self.here() + ", barycentric coordinates")
         corners = self.surface._corner_count(face)
         if given.shape != (corners,):
-            raise ValueError(f"{self.here()}: face {face} has {corners} corners; its barycentric coordinates are so many, "
-                             f"not shape {given.shape}")
+            raise ValueError(f"{self.here()}: face {face} has {corners} corners; expected as many barycentric coordinates, "
+                             f"got shape {given.shape}")
         weights = np.asarray(given, float)
         if not np.isfinite(weights).all():
             raise ValueError(f"{self.here()}: the barycentric coordinates {weights.tolist()} are not finite")
-        # Single precision is not precise enough for the sum to be 1 in double precision.
+        # The sum of single-precision weights is not 1 in double precision.
         if given.dtype.itemsize < 8 and abs(weights.sum() - 1) < 1e-5:
             weights = weights / weights.sum()
         return face, weights
@@ -87,22 +87,24 @@ class Places:
 
 
 def point(value: Any, name: str, surface: Any) -> tuple:
-    """One point: a row, a position, `(face, barycentric)`, or `((row, row), t)` on an edge."""
+    """Packs one point: a row, a position, `(face, barycentric)`, or `((row, row), t)` on an edge."""
     result = Places(name, True, surface)
     result.add(value)
     return result.packed()
 
 
 def points(value: Any, name: str, surface: Any, empty: bool = False) -> tuple:
-    """Points: one; or rows (k,), positions (k, 3), `(faces, barycentric)`, `(edges, t)`, or a list of any.
+    """Packs points: one point, rows (k,), positions (k, 3), `(faces, barycentric)`, `(edges, t)`, or a list of any of these.
 
-    Three whole numbers are rows, three others a position. empty : there may be none.
+    Three integers are rows, three other numbers are a position.
+
+    empty : whether there may be no points.
     """
     if is_row(value) or _is_face_point(value) or _is_edge_point(value, surface):
         return point(value, name, surface)
     if isinstance(value, (str, bytes)) or not hasattr(value, "__len__"):
-        raise TypeError(f"{name}: rows, positions, (face, barycentric) or ((row, row), t) are needed, "
-                        f"not {arguments.describe(value)}")
+        raise TypeError(f"{name}: expected rows, positions, (face, barycentric) or ((row, row), t), "
+                        f"got {arguments.describe(value)}")
     if len(value) == 0 and empty:
         return of_rows(np.empty(0, np.int32), name)
     if len(value) == 0:
@@ -121,12 +123,12 @@ def points(value: Any, name: str, surface: Any, empty: bool = False) -> tuple:
         if whole is not None and whole.shape == (surface._position_width,) and whole.dtype.kind == "f":
             return point(whole, name, surface)
         if whole is not None and whole.ndim == 1:
-            raise TypeError(f"{name}: rows are whole numbers, and a list of positions has the shape (k, 3), "
-                            f"not {arguments.describe(value, whole)}")
+            raise TypeError(f"{name}: expected rows (integers) or positions of shape (k, 3), "
+                            f"got {arguments.describe(value, whole)}")
         columns = value
     elif len(value[0]) != len(value[1]):
         what = ("faces", "rows of barycentric coordinates") if np.ndim(value[0]) == 1 else ("edges", "values of t")
-        raise ValueError(f"{name}: {len(value[0])} {what[0]}, but {len(value[1])} {what[1]}")
+        raise ValueError(f"{name}: the numbers of {what[0]} and {what[1]} differ: {len(value[0])} and {len(value[1])}")
     for one in columns:
         result.add(one)
     return result.packed()
@@ -138,17 +140,17 @@ def of_rows(rows: np.ndarray, name: str) -> tuple:
 
 
 def joined(first: tuple, second: tuple) -> tuple:
-    """Two packed lists as one, under the name of the first."""
+    """Joins two packed lists. The result has the name of the first."""
     width = max(first[5].shape[1], second[5].shape[1])
     values = [np.pad(x, ((0, 0), (0, width - x.shape[1]))) for x in (first[5], second[5])]
     return (first[0], False, *(np.concatenate([a, b]) for a, b in zip(first[2:5], second[2:5])), np.concatenate(values))
 
 
 def positions(given: np.ndarray, where: Any, first: int, surface: Any) -> np.ndarray:
-    """(k, 3), finite; positions on a grid in the plane get 0 as their third coordinate."""
+    """Checks that positions are finite. Returns (k, 3): the third coordinate on a grid in the plane is 0."""
     wanted = surface._position_width
     if given.shape[1] != wanted:
-        raise ValueError(f"{where(first)}: a position has {wanted} numbers, not shape {given.shape[1:]}")
+        raise ValueError(f"{where(first)}: expected a position of {wanted} numbers, got shape {given.shape[1:]}")
     result = np.zeros((len(given), 3))
     result[:, :wanted] = given
     bad = ~np.isfinite(result).all(axis=1)
@@ -164,7 +166,7 @@ def _of_positions(values: np.ndarray, name: str) -> tuple:
 
 
 def _in_triangles(value: tuple, name: str, surface: Any) -> Any:
-    """(faces (k,), barycentric (k, 3)) without a fault, all at once; None of others, which are looked at one by one."""
+    """Packs (faces (k,), barycentric (k, 3)) on triangles all at once. Returns None on any fault; points are then checked one by one."""
     try:
         faces, weights = np.asarray(value[0]), np.asarray(value[1])
     except ValueError:
@@ -183,7 +185,7 @@ def _in_triangles(value: tuple, name: str, surface: Any) -> Any:
 
 
 def _whole(value: Any, name: str) -> Any:
-    """As one array of numbers; None where it is none."""
+    """The value as one array of numbers; None if it is not an array of numbers."""
     if isinstance(value, (list, tuple)) and any(isinstance(one, (bool, np.bool_)) for one in value):
         return None
     try:
@@ -193,7 +195,7 @@ def _whole(value: Any, name: str) -> Any:
 
 
 def _columns(value: Any) -> Any:
-    """The points of `(faces, barycentric)` or `(edges, t)`; None where it is neither."""
+    """The points of `(faces, barycentric)` or `(edges, t)`; None for anything else."""
     if not (isinstance(value, tuple) and len(value) == 2 and all(hasattr(one, "__len__") for one in value)):
         return None
     try:
@@ -223,7 +225,7 @@ def _is_edge_point(value: Any, surface: Any) -> bool:
     if not (isinstance(value, tuple) and len(value) == 2 and not isinstance(value[1], (str, bytes))):
         return False
     edge, t = value
-    if surface._position_width == 2:  # of a grid, which has no edges: a position and a row
+    if surface._position_width == 2:  # a grid has no edge points; this is a list of a position and a row
         return False
     return (hasattr(edge, "__len__") and not isinstance(edge, (str, bytes, dict, set)) and len(edge) == 2
             and all(is_row(row) for row in edge) and np.ndim(t) == 0)

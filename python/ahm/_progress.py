@@ -1,4 +1,4 @@
-"""What `progress=` may be: None, True (a bar), or a callable."""
+"""Progress reports: the argument `progress` is None, True (a progress bar), or a callable."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ Progress = Union[None, bool, Callable[[str, float], Any]]
 
 
 class _Line:
-    """One line on stderr that grows; where tqdm is not installed."""
+    """Progress as one line on stderr that is overwritten. Used if tqdm is not installed."""
 
     def __init__(self) -> None:
         self.width = 0
 
     def __call__(self, stage: str, fraction: float) -> None:
-        if sys.stderr is None:  # of programs without a console
+        if sys.stderr is None:  # programs without a console
             return
         text = f"\r{stage}: {100 * fraction:3.0f} %"
         sys.stderr.write(text.ljust(self.width))
@@ -59,4 +59,4 @@ def reporting(progress: Progress) -> Iterator[Optional[Callable[[str, float], An
     elif callable(progress):
         yield progress
     else:
-        raise TypeError(f"progress: None, True or a callable is needed, not {type(progress).__name__}")
+        raise TypeError(f"progress: expected None, True or a callable, got {type(progress).__name__}")

@@ -1,4 +1,4 @@
-"""What makes log maps: diffusion, polar fronts, or exact geodesics."""
+"""Solvers for log maps: by the heat method, by polar fronts, or by exact geodesics."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from ._surfaces import Surface
 
 
 class _Maker:
-    """What solvers and exact geodesics share: maps from packed sources, which pickles make again."""
+    """Base of the solvers: computes maps from packed sources, and gives each map a recipe for its pickle."""
 
     surface: Surface
     method: str
@@ -41,8 +41,10 @@ class _Maker:
 
 
 class _Recipe:
-    """How the maps of one call are made: what goes into their pickles. Those that came out of one pickle are made together
-    when the first of them is asked for, and by threads once."""
+    """The inputs of the maps of one call, which pickles store instead of the maps.
+
+    The first access to a map of a pickle computes all maps of this pickle together. A lock makes threads do so only once.
+    """
 
     def __init__(self, maker: _Maker, at: tuple, axis: Any, options: Dict[str, Any]) -> None:
         self.maker, self.at, self.axis, self.options = maker, at, axis, options
@@ -73,18 +75,21 @@ class _Recipe:
 
 
 class LogMapSolver(_Maker):
-    """Solves for log maps on one surface: factors once, then serves any number of sources. Immutable, shared by threads.
+    """Computes log maps on one surface by the affine heat method. Factors once for any number of sources.
+
+    Immutable; threads can share it.
 
     surface : a `Surface`, or what `ahm.surface` takes.
-    t_coef : tau = t_coef h^2, the diffusion time; > 0.
+    t_coef : factor of the diffusion time tau = t_coef h^2, with the mean edge length h; > 0.
     variant : "adaptive" (Alg. 2) or "localized" (Alg. 1) of [SS25].
-    strategy : "automatic", "global" (one factorization) or "march" (band by band, any size and distance).
-    expected_maps : for "automatic": the number of maps to be made; 0: many.
-    memory : for "automatic": bytes that factors may take; 0: half of the machine's memory.
-    accuracy : of marches, against a global solve, relative.
-    ordering : "amd", or "nested_dissection": for many maps.
-    threads : 0: one per core. No result depends on it.
-    progress : None, True (a bar), or a callable (stage, fraction).
+    strategy : "global": one factorization of the whole graph. "march": band by band outwards from the source, for any size and
+        distance. "automatic": chosen by the size of the graph, the number of maps and the memory.
+    expected_maps : for "automatic": number of maps to compute; 0: many.
+    memory : for "automatic": bytes available for the factors; 0: half of the machine's memory.
+    accuracy : for "march": largest relative difference to a global solve, in [1e-14, 0.1].
+    ordering : fill-reducing ordering of the factorization: "amd", or "nested_dissection", which is better for many maps.
+    threads : number of threads; 0: one per core. No result depends on it.
+    progress : None, True (a progress bar), or a callable that takes (stage, fraction).
 
     Raises ValueError naming the option; NotPositiveDefinite (a RuntimeError), ResourceExhausted (a MemoryError).
 
@@ -108,30 +113,32 @@ class LogMapSolver(_Maker):
 
     @property
     def _maker(self) -> Any:
-        """As the C++ side takes what makes maps."""
+        """The argument `maker` of functions of the C++ extension."""
         return self._core
 
     @property
     def strategy(self) -> str:
-        """What was chosen: "global" or "march"."""
+        """The strategy in use: "global" or "march"."""
         return self._core.strategy
 
     def log_map(self, source: Any, *, u_axis: Any = None, radius: Optional[float] = None, frames: bool = True,
                 variant: Optional[str] = None, threads: Optional[int] = None, progress: Progress = None) -> LogMap:
-        """The log map of one source: a row, a position (the nearest point of the surface), `(face, barycentric)`, or
-        `((row, row), t)`, a point on an edge.
+        """The log map of one source.
 
-        u_axis : (3,) a vector of space, projected to the surface; None: the x axis of the row's frame, or the face's first side.
-        radius : rows farther than this, world units, get `Status.beyond_radius`.
-        frames : keep the transported frames, which `LogMap.frames`, `axes`, `gradient` and `inverse` need.
-        variant, threads, progress : as of the solver.
+        source : a row, a position (the nearest point of the surface is used), `(face, barycentric)`, or `((row, row), t)`: the
+            point at fraction t of an edge.
+        u_axis : (3,) vector in space along which u runs, projected to the surface; None: the x axis of the row's frame, the
+            direction of the edge, or the first side of the face.
+        radius : rows farther than this get `Status.beyond_radius`; world units. None: no limit.
+        frames : keep the transported frames, which `LogMap.frames`, `axes`, `gradient` and `inverse` require.
+        variant, threads, progress : as in the constructor; None: the option of the solver.
 
         >>> import ahm
         >>> solver = ahm.LogMapSolver(ahm.shapes.plane(4, 3))
         >>> solver.log_map([0.5, 0.0, 0.0], u_axis=[1, 0, 0]).uv[11].round(9).tolist()
         [2.5, 2.0]
 
-        Raises ValueError naming argument, index and value; NotPositiveDefinite, ResourceExhausted.
+        Raises ValueError naming the argument, the index and the value; NotPositiveDefinite, ResourceExhausted.
         """
         at = places.point(source, "source", self.surface)
         return self._solve(at, u_axis, progress, radius=radius, frames=frames, variant=variant, threads=threads)[0]
@@ -139,14 +146,15 @@ class LogMapSolver(_Maker):
     def log_maps(self, sources: Any, *, u_axis: Any = None, radius: Optional[float] = None, frames: bool = False,
                  spread: bool = True, distances: bool = True, variant: Optional[str] = None, threads: Optional[int] = None,
                  progress: Progress = None) -> List[LogMap]:
-        """One map for each source, in blocks, which is faster than one by one, and the same to rounding.
+        """One map per source, solved in blocks. Faster than one by one; the results agree up to rounding.
 
-        sources : (k,) rows, (k, 3) positions, `(faces, barycentric)`, `(edges, t)`, or a list of any.
-        spread : keep `LogMap.spread`, which `quality` needs and which is a fifth of the work.
-        distances : find `LogMap.distance`. Without, maps are `uv` alone, in a half to a third of the time: their distance is |uv|,
-            no shorter than the straight line in space, and they have no spread.
+        sources : (k,) rows, (k, 3) positions, `(faces, barycentric)`, `(edges, t)`, or a list of any of these.
+        frames : as in `log_map`, but False by default.
+        spread : compute `LogMap.spread`, which `quality` requires. It takes a fifth of the time.
+        distances : compute `LogMap.distance`. If False, maps take a half to a third of the time. Their distance is then the length
+            |uv|, or the straight-line distance in space if that is longer, and they have no spread.
 
-        Other arguments and errors as of `log_map`; frames are left out unless asked for.
+        Other arguments and errors as in `log_map`.
 
         >>> import ahm
         >>> [m.source.row for m in ahm.LogMapSolver(ahm.shapes.plane(4, 3)).log_maps([0, 7, 11])]
@@ -171,17 +179,19 @@ def _solver_again(on: Surface, options: Dict[str, Any]) -> LogMapSolver:
 
 
 class PolarMapSolver(_Maker):
-    """Log maps in geodesic polar coordinates: the length of the shortest path to each row times the direction in which it leaves
-    the source. Nothing is factored. On meshes exact windows around the source start a front; elsewhere it starts at the source.
+    """Log maps in geodesic polar coordinates: the length of the shortest path times its direction at the source.
 
-    Can be used wherever a `LogMapSolver` can: `cells`, `karcher_mean`, `geometric_median`, `atlas`. Shared by threads.
+    Nothing is factored. On meshes and clouds, exact windows compute distances and directions around the source, and a front
+    continues from there. On grids and graphs the front starts at the source. Immutable; threads can share it.
+
+    `cells`, `karcher_mean`, `geometric_median` and `atlas` accept it in place of a `LogMapSolver`.
 
     surface : a `Surface` of dimension 2, or what `ahm.surface` takes.
-    windows : exact windows around the source per map; None: 8 per vertex and no fewer than 131,072; 0: none.
-    threads : 0: one per core. No result depends on it.
-    progress : None, True (a bar), or a callable (stage, fraction).
+    windows : number of exact windows around the source per map; None: 8 per vertex, at least 131,072; 0: none.
+    threads : number of threads; 0: one per core. No result depends on it.
+    progress : None, True (a progress bar), or a callable that takes (stage, fraction).
 
-    Raises ValueError where the dimension is not 2.
+    Raises ValueError if the dimension is not 2.
 
     >>> import ahm
     >>> solver = ahm.PolarMapSolver(ahm.shapes.sphere(3))
@@ -205,7 +215,7 @@ class PolarMapSolver(_Maker):
 
     def log_map(self, source: Any, *, u_axis: Any = None, radius: Optional[float] = None, frames: bool = True,
                 progress: Progress = None) -> LogMap:
-        """The polar map of one source. Arguments and errors as of `LogMapSolver.log_map`.
+        """The polar map of one source. Arguments and errors as in `LogMapSolver.log_map`.
 
         >>> import ahm
         >>> m = ahm.PolarMapSolver(ahm.shapes.plane(4, 3)).log_map(((0, 1), 0.5), u_axis=[1, 0, 0])
@@ -217,8 +227,9 @@ class PolarMapSolver(_Maker):
 
     def log_maps(self, sources: Any, *, u_axis: Any = None, radius: Optional[float] = None, frames: bool = False,
                  threads: Optional[int] = None, progress: Progress = None) -> List[LogMap]:
-        """One map for each source, several at a time, and the same numbers. Arguments and errors as of `log_map` and
-        `LogMapSolver.log_maps`.
+        """One map per source, several at a time, with the same results as `log_map`.
+
+        Arguments and errors as in `log_map` and `LogMapSolver.log_maps`.
 
         >>> import ahm
         >>> [m.method for m in ahm.PolarMapSolver(ahm.shapes.plane(4, 3)).log_maps([0, 7])]
@@ -242,16 +253,18 @@ def _polar_again(on: Surface, options: Dict[str, Any]) -> PolarMapSolver:
 
 
 class ExactGeodesics(_Maker):
-    """Log maps by straight lines over the flat triangles of a mesh, exact up to rounding; laid out once for many maps.
+    """Log maps by shortest paths over the flat triangles of a mesh, exact up to rounding. Prepares the triangles once for many maps.
 
-    Stands wherever a `LogMapSolver` does: `stroke`, `cells`, `karcher_mean`, `geometric_median`, `atlas`. Shared by threads.
+    `stroke`, `cells`, `karcher_mean`, `geometric_median` and `atlas` accept it in place of a `LogMapSolver`. Immutable; threads
+    can share it.
 
     surface : a mesh whose faces are flat, or what `ahm.surface` takes.
-    tolerance : how far distances may be off, relative, in [0, 0.1]. 0: exact; above, nearly linear in the number of rows,
-        and directions may be off by about sqrt(2 tolerance), or be those of another way as long within it.
-    progress : None, True (a bar), or a callable (stage, fraction).
+    tolerance : maximum relative error of distances, in [0, 0.1]. 0: exact. Above 0, the time is nearly linear in the number of
+        rows. Directions may then be off by about sqrt(2 tolerance) radians. Where two paths differ by less than the tolerance,
+        the direction may be that of either.
+    progress : None, True (a progress bar), or a callable that takes (stage, fraction).
 
-    Raises ValueError where the surface has no flat faces (clouds, grids, twisted polygons) or a face has no area.
+    Raises ValueError if the surface has no flat faces (clouds, grids, twisted polygons) or if a face has no area.
 
     >>> import ahm
     >>> geodesics = ahm.ExactGeodesics(ahm.shapes.sphere(3))
@@ -272,10 +285,9 @@ class ExactGeodesics(_Maker):
 
     def log_map(self, source: Any, *, u_axis: Any = None, radius: Optional[float] = None, tolerance: Optional[float] = None,
                 frames: bool = True, progress: Progress = None) -> LogMap:
-        """The exact log map of one source. Arguments and errors as of `LogMapSolver.log_map`; within a radius it is as much
-        cheaper.
+        """The exact log map of one source. Arguments and errors as in `LogMapSolver.log_map`. A small radius saves time.
 
-        tolerance : of this map; None: that of the object.
+        tolerance : tolerance of this map; None: that of the constructor.
 
         >>> import ahm
         >>> m = ahm.ExactGeodesics(ahm.shapes.plane(4, 3)).log_map(((0, 1), 0.5), u_axis=[1, 0, 0])
@@ -288,8 +300,9 @@ class ExactGeodesics(_Maker):
 
     def log_maps(self, sources: Any, *, u_axis: Any = None, radius: Optional[float] = None,
                  tolerance: Optional[float] = None, frames: bool = False, threads: int = 0, progress: Progress = None) -> List[LogMap]:
-        """One map for each source, several at a time, and the same numbers. Arguments and errors as of `log_map` and
-        `LogMapSolver.log_maps`.
+        """One map per source, several at a time, with the same results as `log_map`.
+
+        Arguments and errors as in `log_map` and `LogMapSolver.log_maps`.
 
         >>> import ahm
         >>> [m.method for m in ahm.ExactGeodesics(ahm.shapes.plane(4, 3)).log_maps([0, 7])]
@@ -322,30 +335,31 @@ Maker = Union[LogMapSolver, PolarMapSolver, ExactGeodesics]
 
 def log_map(surface: Any, source: Any, *, method: str = "auto", u_axis: Any = None, radius: Optional[float] = None,
             tolerance: Optional[float] = None, frames: bool = True, progress: Progress = None, **options: Any) -> LogMap:
-    """The log map of one source. For many sources on one surface make a `LogMapSolver`, `PolarMapSolver` or `ExactGeodesics`.
+    """The log map of one source: direction and distance of every row. For many sources on one surface use a `SurfaceSolver`.
 
-    surface : a `Surface`, or what `ahm.surface` takes.
+    surface : a `Surface`, a solver, or what `ahm.surface` takes.
     source : a row, a position, `(face, barycentric)`, or `((row, row), t)` on an edge.
-    method : "auto" (default): "polar" on meshes and on clouds with little noise; else, and with options of heat, "heat".
-        "polar": length and direction of the shortest path, by a front, on any surface; "heat": the affine heat method, smooth
-        across noise; "exact": straight lines over the flat triangles of a mesh. `LogMap.method` is the one that was used.
-    tolerance : of exact distances, as of `ExactGeodesics`.
-    u_axis, radius, frames, progress : as of `LogMapSolver.log_map`.
-    options : threads; of `LogMapSolver`, for method "heat": t_coef, variant, ...
+    method : "polar": length and direction of the shortest path, by a front, on any surface. "heat": the affine heat method,
+        smooth on noisy clouds. "exact": shortest paths over the flat triangles of a mesh. "auto" (default): "polar" on meshes and
+        on clouds with little noise, otherwise "heat"; also "heat" if `options` contains options of this method.
+        `LogMap.method` is the method that was used.
+    tolerance : maximum relative error of exact maps, as in `ExactGeodesics`.
+    u_axis, radius, frames, progress : as in `LogMapSolver.log_map`.
+    options : threads; for method "heat" also t_coef, variant and other options of `LogMapSolver`.
 
     >>> import ahm
     >>> m = ahm.log_map(ahm.shapes.sphere(3), 0, method="exact")
     >>> bool(abs(m.distance.max() - 3.14159) < 0.02)
     True
 
-    Raises ValueError naming argument, index and value; NotPositiveDefinite, ResourceExhausted.
+    Raises ValueError naming the argument, the index and the value; NotPositiveDefinite, ResourceExhausted.
     """
     maker = chosen_maker(surface, method, dict(expected_maps=1, progress=progress, **options), tolerance)
     return maker.log_map(source, u_axis=u_axis, radius=radius, frames=frames, progress=progress)
 
 
 def chosen_maker(thing: Any, method: str, options: Optional[Dict[str, Any]] = None, tolerance: Optional[float] = None) -> Maker:
-    """As `as_maker`, with "auto" for the method that suits the surface; for heat where it is given what only heat has."""
+    """Like `as_maker`, but accepts the method "auto": the method suggested for the surface, or heat if an option requires it."""
     arguments.choice(method, "method", ("auto", "polar", "heat", "exact"))
     thing = getattr(thing, "_solver", thing)
     if method != "auto":
@@ -359,8 +373,11 @@ def chosen_maker(thing: Any, method: str, options: Optional[Dict[str, Any]] = No
 
 def as_maker(thing: Any, method: Optional[str] = None, options: Optional[Dict[str, Any]] = None,
              tolerance: Optional[float] = None) -> Maker:
-    """What makes maps by this method, made from a surface where it is not made yet. None: by heat, or by what is given.
-    With a tolerance of its own, where one is given."""
+    """A solver for this method. `thing` is returned if it is such a solver; otherwise one is made from its surface.
+
+    method : None: the method of `thing` if it is a solver, otherwise heat.
+    tolerance : None: that of `thing`.
+    """
     if method is not None:
         arguments.choice(method, "method", ("polar", "heat", "exact"))
     thing = getattr(thing, "_solver", thing)
@@ -370,7 +387,7 @@ def as_maker(thing: Any, method: Optional[str] = None, options: Optional[Dict[st
     by = made if ready else method or "heat"
     unknown = sorted(set(given) - {"expected_maps", "progress", "threads"}) if ready or by != "heat" else []
     if unknown:
-        raise TypeError(f"{unknown[0]}: " + ("the solver has its options already" if ready else f"method {by!r} has no such option"))
+        raise TypeError(f"{unknown[0]}: " + ("options of an existing solver cannot be changed" if ready else f"method {by!r} has no such option"))
     within = tolerance_of(thing, by or "heat", tolerance)
     if ready and tolerance is None:
         return thing
@@ -382,17 +399,17 @@ def as_maker(thing: Any, method: Optional[str] = None, options: Optional[Dict[st
 
 
 def tolerance_of(thing: Any, method: str, tolerance: Optional[float]) -> float:
-    """Of exact maps of a surface, or of what makes them; other methods have none."""
+    """The tolerance of exact maps: the argument, or else that of an `ExactGeodesics`, or else 0. Other methods have none."""
     thing = getattr(thing, "_solver", thing)
     if tolerance is None:
         return thing.tolerance if isinstance(thing, ExactGeodesics) else 0.0
     if method != "exact":
-        raise TypeError("tolerance: goes with method 'exact'")
+        raise TypeError("tolerance: requires method 'exact'")
     return float(checked(tolerance=tolerance)["tolerance"])
 
 
 def as_solver(thing: Any) -> LogMapSolver:
-    """The solver itself, or one on this surface."""
+    """`thing` if it is a `LogMapSolver`, otherwise a new solver on its surface."""
     thing = getattr(thing, "_solver", thing)
     return thing if isinstance(thing, LogMapSolver) else LogMapSolver(as_body(thing))
 

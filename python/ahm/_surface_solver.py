@@ -1,4 +1,4 @@
-"""One object for maps, distances and paths on a surface."""
+"""One solver for maps, distances and paths on a surface."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ class SurfaceSolver:
     """Log maps, distances and paths on one surface. Prepares the method once for any number of maps; threads can share it.
 
     surface : a `Surface`, or what `ahm.surface` takes.
-    method : "auto" (the method that suits the surface), "polar", "heat" or "exact", as of `log_map`.
-    tolerance : of exact maps, as of `ExactGeodesics`.
-    options : threads and progress; for method "heat" also t_coef, variant, ... of `LogMapSolver`.
+    method : "auto" (the method suggested for the surface), "polar", "heat" or "exact", as in `log_map`.
+    tolerance : maximum relative error of exact maps, as in `ExactGeodesics`.
+    options : threads and progress; for method "heat" also t_coef, variant and other options of `LogMapSolver`.
 
-    Functions that take a solver (`cells`, `atlas`, `karcher_mean`, ...) take it, too. The C++ class has the same members.
+    Functions that take a solver (`cells`, `atlas`, `karcher_mean`, ...) also accept a SurfaceSolver.
 
     >>> import ahm
     >>> solver = ahm.SurfaceSolver(ahm.shapes.plane(4, 3))
@@ -52,7 +52,7 @@ class SurfaceSolver:
 
     def log_map(self, source: Any, *, u_axis: Any = None, radius: Optional[float] = None, frames: bool = True,
                 progress: Progress = None) -> LogMap:
-        """The log map of one source. Arguments and errors as of `LogMapSolver.log_map`.
+        """The log map of one source. Arguments and errors as in `LogMapSolver.log_map`.
 
         >>> import ahm
         >>> m = ahm.SurfaceSolver(ahm.shapes.plane(4, 3)).log_map([0.5, 0.0, 0.0], u_axis=[1, 0, 0])
@@ -63,7 +63,7 @@ class SurfaceSolver:
 
     def log_maps(self, sources: Any, *, u_axis: Any = None, radius: Optional[float] = None, frames: bool = True,
                  progress: Progress = None) -> List[LogMap]:
-        """One map per source, computed on several threads. Arguments and errors as of `LogMapSolver.log_maps`.
+        """One map per source, computed on several threads. Arguments and errors as in `LogMapSolver.log_maps`.
 
         >>> import ahm
         >>> [m.source.row for m in ahm.SurfaceSolver(ahm.shapes.plane(4, 3)).log_maps([0, 7, 11])]
@@ -72,8 +72,9 @@ class SurfaceSolver:
         return self._solver.log_maps(sources, u_axis=u_axis, radius=radius, frames=frames, progress=progress)
 
     def distance(self, sources: Any, *, radius: Optional[float] = None, progress: Progress = None) -> np.ndarray:
-        """(n,) geodesic distance of each row from the nearest source, world units: by a wavefront, or exact where that is the
-        method. NaN where no source is connected. Arguments and errors as of `distance`.
+        """(n,) geodesic distance of every row from the nearest source, world units. NaN where no source is connected.
+
+        Computed by a wavefront, or exactly if the method is "exact". Arguments and errors as in `ahm.distance`.
 
         >>> import ahm
         >>> ahm.SurfaceSolver(ahm.shapes.plane(4, 2)).distance([0, 3])[:4].round(9).tolist()
@@ -84,9 +85,10 @@ class SurfaceSolver:
         return _distance(self.surface, sources, radius=radius, progress=progress)
 
     def path(self, start: Any, end: Any, *, progress: Progress = None) -> Optional[Path]:
-        """The shortest path: exact over flat faces, else over tangent planes. None where there is none.
+        """The shortest path between two points: exact over flat faces, on clouds over tangent planes. None if not connected.
 
-        start, end : a row, a position, `(face, barycentric)`, or `((row, row), t)`. progress : as of `LogMapSolver`.
+        start, end : a row, a position, `(face, barycentric)`, or `((row, row), t)`.
+        progress : as in `LogMapSolver`.
 
         >>> import ahm
         >>> round(ahm.SurfaceSolver(ahm.shapes.plane(4, 3)).path(0, 11).length ** 2, 9)
@@ -97,7 +99,7 @@ class SurfaceSolver:
         return geodesic_path(self.surface, start, end, progress=progress)
 
     def trace(self, start: Any, direction: Any, length: Optional[float] = None, *, progress: Progress = None) -> Path:
-        """The straightest geodesic from a point: the exponential map. Arguments and errors as of `trace`.
+        """The straightest geodesic from a point: the exponential map. Arguments and errors as in `ahm.trace`.
 
         >>> import ahm
         >>> end = ahm.SurfaceSolver(ahm.shapes.plane(4, 3)).trace(0, [1, 0, 0], 2).points[-1]
@@ -108,7 +110,7 @@ class SurfaceSolver:
 
     def local_maps(self, radius: Optional[float] = None, k: Optional[int] = None, *, sources: Any = None, u_axis: Any = None,
                    margin: float = 2.0, progress: Progress = None) -> LocalMaps:
-        """The log map around every row, or around `sources`, within a radius. Arguments and errors as of `local_maps`.
+        """Log maps within a radius around every row, or around `sources`. Arguments and errors as in `ahm.local_maps`.
 
         >>> import ahm
         >>> ahm.SurfaceSolver(ahm.shapes.plane(9, 9)).local_maps(radius=1.0, sources=[40, 0])

@@ -1,4 +1,4 @@
-"""What maps are made on: what surfaces, grids and graphs have in common."""
+"""The base class of meshes, clouds, grids and graphs."""
 
 from __future__ import annotations
 
@@ -11,34 +11,38 @@ from . import _core
 
 
 class ClosestPoints(NamedTuple):
-    """Points of a surface nearest to positions in space; k of them."""
+    """The points of a surface nearest to k positions in space. Returned by `Surface.closest_points`."""
 
-    position: np.ndarray  #: (k, 3), world units
-    distance: np.ndarray  #: (k,), in space
-    face: np.ndarray  #: (k,) int32; -1 of a cloud
-    barycentric: List[Optional[np.ndarray]]  #: one number per corner of the face; None of a cloud
-    row: np.ndarray  #: (k,) int32, of a cloud: the row in whose tangent plane the point lies; else -1
+    position: np.ndarray  #: (k, 3) positions of the nearest points, world units
+    distance: np.ndarray  #: (k,) distances in space from the nearest points, world units
+    face: np.ndarray  #: (k,) int32 faces of the nearest points; -1 on clouds
+    barycentric: List[Optional[np.ndarray]]  #: k arrays, one number per corner of the face; None on clouds
+    row: np.ndarray  #: (k,) int32 on clouds, the row whose tangent plane contains the point; -1 on meshes
 
 
 class TangentGraph(NamedTuple):
-    """The graph under a surface, by vertices: arrays in compressed rows, in units of `length_unit` (docs/concepts/graph_contract.md)."""
+    """The tangent graph of a surface, by vertices, in compressed rows (docs/concepts/graph_contract.md).
 
-    indptr: np.ndarray  #: (n + 1,) int64
-    indices: np.ndarray  #: (e,) int32: the neighbour j of edge i -> j
-    weights: np.ndarray  #: (e,) w_ij
-    logs: np.ndarray  #: (e, d): where j lies, seen from i, in the frame of i
-    transports: np.ndarray  #: (e, 2) (cos, sin), or (e, d, d): from the frame of j to that of i
-    masses: np.ndarray  #: (n,)
-    frames: Optional[np.ndarray]  #: (n, 4, 3): origin, x, y, normal in space, world units; None without
-    length_unit: float
-    vertex_of_row: np.ndarray  #: (rows,) int32; -1: removed
-    row_of_vertex: np.ndarray  #: (n,) int32; -1: a vertex that the input does not have
+    Lengths are in units of `length_unit`. Returned by `Surface.graph`.
+    """
+
+    indptr: np.ndarray  #: (n + 1,) int64 offsets of the edges of every vertex
+    indices: np.ndarray  #: (e,) int32 neighbor j of the directed edge i -> j
+    weights: np.ndarray  #: (e,) edge weights w_ij
+    logs: np.ndarray  #: (e, d) logarithms: position of neighbor j in the frame of i
+    transports: np.ndarray  #: (e, 2) (cos, sin), or (e, d, d): from the frame of j to the frame of i
+    masses: np.ndarray  #: (n,) masses of the vertices
+    frames: Optional[np.ndarray]  #: (n, 4, 3) origin, x axis, y axis and normal in space, world units; None without frames
+    length_unit: float  #: length of 1 in these arrays, world units
+    vertex_of_row: np.ndarray  #: (rows,) int32 vertex of every row of the input; -1: removed
+    row_of_vertex: np.ndarray  #: (n,) int32 row of every vertex; -1: the vertex is not in the input
 
 
 class Surface:
-    """What maps are made on. Immutable, and shared by threads; made by its subclasses, `ahm.read` and `ahm.surface`.
+    """Base class of meshes, clouds, grids and graphs. Immutable; threads can share it.
 
-    Its rows are those of the input: vertices of a mesh, points of a cloud. All results have one entry per row.
+    Create one with a subclass, `ahm.read` or `ahm.surface`. Its rows are those of the input: the vertices of a mesh or the points
+    of a cloud. All results have one entry per row.
     """
 
     _body: _core.Body
@@ -51,27 +55,27 @@ class Surface:
 
     @property
     def points(self) -> np.ndarray:
-        """(n, 3) positions as given, world units; read-only, not a copy."""
+        """(n, 3) positions of the input, world units; a read-only view."""
         return self._body.positions()
 
     @property
     def dimension(self) -> int:
-        """Of the tangent spaces: 2 of surfaces."""
+        """Dimension of the tangent spaces; 2 for surfaces."""
         return self._body.dimension
 
     @property
     def mean_edge_length(self) -> float:
-        """Mean length h of the graph's edges, world units: the scale of the diffusion, tau = t_coef h^2."""
+        """Mean length h of the graph's edges, world units. The diffusion time is tau = t_coef h^2."""
         return self._body.mean_edge_length
 
     @property
     def normals(self) -> np.ndarray:
-        """(n, 3) unit normals as the graph uses them; NaN where a row has none."""
+        """(n, 3) unit normals, with the orientation that the graph uses; NaN where a row has none."""
         return self._body.normals()
 
     @property
     def frames(self) -> Optional[np.ndarray]:
-        """(n, 3, 3) tangent axes x, y and the normal of every row, in space; NaN where a row was removed. None without."""
+        """(n, 3, 3) x axis, y axis and normal of every row in space; NaN where a row was removed. None without frames in space."""
         frames = self._body.frames()
         if frames is None:
             return None
@@ -80,29 +84,32 @@ class Surface:
 
     @property
     def report(self) -> Dict[str, Any]:
-        """What was found and done while the graph was built, by name."""
+        """Statistics of the construction of the graph, by name."""
         return self._body.report()
 
     @property
     def warnings(self) -> List[Dict[str, Any]]:
-        """What one should know: dictionaries with `text`, a sentence, and `id`, `numbers`, `rows` and `name`, as listed in the C++
-        headers."""
+        """Problems of the input: dictionaries with a sentence `text`, and `id`, `numbers`, `rows` and `name`.
+
+        The C++ header of each surface lists the ids."""
         return self._body.warnings()
 
     @property
     def components(self) -> np.ndarray:
-        """(n,) int32 number of the connected component of every row; -1 where a row was removed."""
+        """(n,) int32 number of the connected component of every row, from 0; -1 where a row was removed."""
         vertex = self._body.vertex_of_row()
         return np.where(vertex >= 0, self._body.components()[vertex], -1).astype(np.int32)
 
     @property
     def graph(self) -> TangentGraph:
-        """The graph itself, as arrays (copies)."""
+        """The tangent graph of the surface, as arrays (copies)."""
         body = self._body
         return TangentGraph(*body.csr(), body.frames(), body.length_unit, body.vertex_of_row(), body.row_of_vertex())
 
     def closest_points(self, positions: Any) -> ClosestPoints:
-        """The nearest points of the faces; of a cloud, of the tangent plane of the nearest row.
+        """The nearest point of the surface for each of k positions: on the faces of a mesh, or in the tangent planes of a cloud.
+
+        On a cloud, the point lies in the tangent plane of the nearest row.
 
         positions : (k, 3), world units.
 
@@ -112,7 +119,7 @@ class Surface:
         >>> near.position.round(9).tolist(), near.distance.tolist()
         ([[0.25, 0.25, 0.0]], [2.0])
 
-        Raises ValueError where a position is not finite.
+        Raises ValueError if a position is not finite.
         """
         given = arguments.floats(positions, "positions", (None, 3), finite=True)
         face, row, weights, place, distance = self._body.closest_points(given, None)

@@ -1,4 +1,4 @@
-"""Decals, tool paths and atlases."""
+"""Decals, tool paths and texture atlases."""
 
 from __future__ import annotations
 
@@ -21,14 +21,15 @@ def _inverse(thing: Union[LogMap, InverseMap]) -> InverseMap:
 
 
 class Decal(NamedTuple):
-    """A piece of the surface under an image: a small mesh of its own."""
+    """The piece of the surface under an image, as a separate small mesh. Returned by `decal`."""
 
-    points: np.ndarray  #: (p, 3) world units
-    normals: np.ndarray  #: (p, 3)
-    faces: Any  #: list of corners, counter-clockwise: triangles of the surface, cut along the borders of the image; (m, 3)
-    #: where none is cut
-    uv: np.ndarray  #: (p, 2) in [0, 1]: (0, 0) the lower left corner of the image
-    hidden: int  #: triangles left out, since another sheet of the map lies over the same place
+    points: np.ndarray  #: (p, 3) positions, world units
+    normals: np.ndarray  #: (p, 3) unit normals
+    #: Corners of every face, counter-clockwise: triangles of the surface, cut along the borders of the image. An (m, 3) array if
+    #: no triangle is cut, otherwise a list of arrays
+    faces: Any
+    uv: np.ndarray  #: (p, 2) image coordinates in [0, 1]; (0, 0) is the lower left corner of the image
+    hidden: int  #: number of triangles left out: under another sheet of the map, or not connected to the rest of the decal
 
     def __repr__(self) -> str:
         return f"<ahm.Decal: {len(self.points)} points, {len(self.faces)} faces>"
@@ -36,11 +37,14 @@ class Decal(NamedTuple):
 
 def decal(map: Union[LogMap, InverseMap], width: float, height: float, *, angle: float = 0.0, mirrored: bool = False,
           radius: Optional[float] = None, lift: float = 0.0) -> Decal:
-    """A rectangle of the (u, v) plane with its middle at the source, carried to the surface.
+    """Maps an image, a rectangle of the (u, v) plane with its center at the source, to the surface.
 
     map : a `LogMap` with frames, or an `InverseMap`.
-    width, height : world units. angle : radians from the u axis to the image's direction from left to right.
-    mirrored : left and right exchanged. radius : cut off what is farther. lift : along the normals, world units.
+    width, height : size of the image, > 0, world units.
+    angle : angle from the u axis to the left-to-right direction of the image, counter-clockwise, radians.
+    mirrored : exchange left and right.
+    radius : cut off everything farther from the source than this, world units; None: nothing.
+    lift : offset of the decal along the normals, world units.
 
     >>> import ahm
     >>> m = ahm.log_map(ahm.shapes.plane(9, 9), 40, u_axis=[1, 0, 0])
@@ -57,10 +61,9 @@ def decal(map: Union[LogMap, InverseMap], width: float, height: float, *, angle:
 
 def decal_coordinates(map: Union[LogMap, InverseMap], width: float, height: float, *, angle: float = 0.0,
                       mirrored: bool = False, radius: Optional[float] = None) -> np.ndarray:
-    """Where every row lies in the image, (n, 2) in [0, 1]; NaN where it does not: to paint clouds.
+    """The image coordinates of every row: (n, 2) in [0, 1], for painting clouds. NaN for rows outside the image.
 
-    Arguments and errors as of `decal`.
-
+    Arguments and errors as in `decal`.
 
     >>> import ahm
     >>> m = ahm.log_map(ahm.shapes.plane(9, 9), 40, u_axis=[1, 0, 0])
@@ -74,19 +77,19 @@ def decal_coordinates(map: Union[LogMap, InverseMap], width: float, height: floa
 
 
 class Coverage(NamedTuple):
-    """A path that covers a disc of the surface, k points in order of travel."""
+    """A path that covers a disc of the surface: k points in order of travel. Returned by `coverage`."""
 
-    position: np.ndarray  #: (k, 3) world units
-    normal: np.ndarray  #: (k, 3) unit
-    heading: np.ndarray  #: (k, 3) unit, perpendicular to the normal
-    uv: np.ndarray  #: (k, 2)
-    piece: np.ndarray  #: (k,) int32, from 0; a tool must lift between pieces
-    line: np.ndarray  #: (k,) int32 of the raster; 0 on a spiral
-    arclength: np.ndarray  #: (k,) from the start of the piece along the path
-    spacing: np.ndarray  #: (k,) distance in space to the neighbouring line; NaN where there is none
-    between: np.ndarray  #: (k,) bool; not of the pattern, but where the shortest way over the faces of a mesh bends
-    pieces: int
-    planned: int  #: points of the pattern in the plane; those missing lie outside of the valid region
+    position: np.ndarray  #: (k, 3) positions, world units
+    normal: np.ndarray  #: (k, 3) unit normals of the surface
+    heading: np.ndarray  #: (k, 3) directions of travel, unit vectors perpendicular to the normals
+    uv: np.ndarray  #: (k, 2) coordinates (u, v), world units
+    piece: np.ndarray  #: (k,) int32 number of the connected piece, from 0; a tool must lift between pieces
+    line: np.ndarray  #: (k,) int32 number of the raster line, from 0; 0 on a spiral
+    arclength: np.ndarray  #: (k,) distance from the start of the piece along the path, world units
+    spacing: np.ndarray  #: (k,) distance in space to the neighboring line, world units; NaN where there is none
+    between: np.ndarray  #: (k,) bool, additional points where a shortest path between points of the pattern bends at an edge
+    pieces: int  #: number of pieces
+    planned: int  #: number of points of the pattern in the plane; missing points lie outside the valid region of the map
 
     def __repr__(self) -> str:
         found = len(self.between) - int(np.count_nonzero(self.between))
@@ -95,12 +98,16 @@ class Coverage(NamedTuple):
 
 def coverage(map: Union[LogMap, InverseMap], radius: float, spacing: float, *, pattern: str = "raster",
              step: Optional[float] = None, angle: float = 0.0) -> Coverage:
-    """Lines of equal spacing in log coordinates, carried to the surface, normals included. On meshes its points are joined by
-    shortest paths, which have points of their own where they bend over an edge.
+    """A tool path: lines of equal spacing in the (u, v) plane, mapped to the surface, with normals.
+
+    On meshes the points are joined by shortest paths. Where these bend at an edge, the path has additional points.
 
     map : a `LogMap` with frames, or an `InverseMap`.
-    radius : of the disc about the source. spacing : between lines or turns. step : between points; None: half of the
-        spacing. All in world units. pattern : "raster" or "spiral". angle : radians from the u axis.
+    radius : radius of the disc around the source that is covered, > 0, world units.
+    spacing : distance between lines, or between turns of the spiral, > 0, world units.
+    pattern : "raster" or "spiral".
+    step : longest distance between consecutive points in the plane, world units; None: half of the spacing.
+    angle : angle from the u axis to the lines, or to the first ray of the spiral, radians.
 
     >>> import ahm
     >>> m = ahm.log_map(ahm.shapes.plane(9, 9), 40, u_axis=[1, 0, 0])
@@ -116,16 +123,19 @@ def coverage(map: Union[LogMap, InverseMap], radius: float, spacing: float, *, p
 
 
 class Atlas(NamedTuple):
-    """The surface cut into charts, each flattened by its own log map, and packed into one square texture."""
+    """The surface cut into charts, each flattened by its own log map, and packed into one square texture. Returned by `atlas`."""
 
-    points: np.ndarray  #: (p, 3): the rows of a mesh, or the vertices of a cloud's graph
-    faces: Any  #: (m, c) places in `points` of the corners, a list where faces differ; all oriented alike where that is possible
-    chart: np.ndarray  #: (faces,) int32; -1: no chart
-    chart_uv: np.ndarray  #: (corners, 2) world units, in the frame of the chart's source; NaN without a chart
-    uv: np.ndarray  #: (corners, 2) in [0, 1] of the texture, (0, 0) the lower left corner; NaN without a chart
-    sources: np.ndarray  #: (charts,) int32 row of every chart's source; -1: a vertex that the input does not have
-    distortion: Dict[str, float]  #: of D = max(1 / sigma1, sigma2): mean, median, percentile_95, largest; shares collapsed_area
-    #: (D > 1e6, not in the mean), flipped, flipped_area
+    points: np.ndarray  #: (p, 3) positions, world units: the rows of a mesh, or the vertices of a cloud's graph
+    #: Corners of every face as numbers of `points`: an (m, c) array if all faces have c corners, otherwise a list of arrays.
+    #: Faces are oriented consistently where possible
+    faces: Any
+    chart: np.ndarray  #: (faces,) int32 number of the chart of every face; -1: no chart
+    chart_uv: np.ndarray  #: (corners, 2) coordinates (u, v) in the frame of the chart's source, world units; NaN without a chart
+    uv: np.ndarray  #: (corners, 2) texture coordinates in [0, 1], (0, 0) is the lower left corner; NaN without a chart
+    sources: np.ndarray  #: (charts,) int32 row of every chart's source; -1: the source is a vertex that is not in the input
+    #: Distortion D = max(1 / sigma1, sigma2) of the triangles: mean, median, percentile_95, largest. Also the shares flipped,
+    #: flipped_area and collapsed_area (D > 1e6, not included in the mean)
+    distortion: Dict[str, float]
 
     def __repr__(self) -> str:
         return f"<ahm.Atlas: charts: {len(self.sources)}, {len(self.points)} points, {len(self.faces)} faces>"
@@ -134,16 +144,18 @@ class Atlas(NamedTuple):
 def atlas(solver: Any, sources: Any = None, *, charts: int = 20, max_distortion: Optional[float] = None,
           method: Optional[str] = None, tolerance: Optional[float] = None, size: int = 2048, margin: int = 4,
           progress: Progress = None) -> Atlas:
-    """A texture atlas: geodesic cells around sources, each flattened by the log map from its source.
+    """A texture atlas: geodesic Voronoi cells around sources, each flattened by the log map from its source.
 
-    solver : a `LogMapSolver` or `ExactGeodesics`, or a mesh or cloud.
-    sources : k points; charts start at rows, so that of any other point the nearest row counts; None: `charts` rows spread
-        evenly.
-    method : of a surface: "heat" (default), "polar", or "exact" over the flat triangles of a mesh: cells and charts.
-    tolerance : of exact maps, as of `ExactGeodesics`.
-    max_distortion : > 1: adds sources until the charts are as good as that; None: keeps to the sources.
-    size, margin : texels of a side of the square, and free around each chart.
-    progress : as of `LogMapSolver`.
+    solver : a solver, or a mesh or a cloud.
+    sources : k points, one per chart. Charts start at rows; for other points the nearest row is used. None: farthest points.
+    charts : number of farthest points if `sources` is None.
+    method : for a surface: "heat" (default), "polar", or "exact": exact cells and charts over the flat triangles of a mesh.
+    tolerance : maximum relative error of exact maps, as in `ExactGeodesics`.
+    max_distortion : add sources until the triangles have at most this distortion, except for 1 % of a chart's area; > 1. None: add
+        no sources.
+    size : side of the square texture, texels.
+    margin : empty texels around each chart.
+    progress : as in `LogMapSolver`.
 
     >>> import ahm
     >>> a = ahm.atlas(ahm.shapes.torus(24, 12), charts=6)

@@ -1,4 +1,4 @@
-"""Small meshes to try things on: every function returns (vertices, faces)."""
+"""Simple triangle meshes for examples and tests. Every function returns (vertices, faces)."""
 
 from __future__ import annotations
 
@@ -10,7 +10,9 @@ Mesh = Tuple[np.ndarray, np.ndarray]
 
 
 def plane(nx: int, ny: int, spacing: float = 1.0) -> Mesh:
-    """A rectangle of nx x ny vertices in the plane z = 0, right-angled triangles; row i + nx j lies at (i, j) spacing.
+    """A rectangle of nx x ny vertices in the plane z = 0, cut into right-angled triangles.
+
+    Row i + nx * j lies at (i * spacing, j * spacing, 0).
 
     >>> import ahm
     >>> V, F = ahm.shapes.plane(3, 2)
@@ -25,7 +27,7 @@ def plane(nx: int, ny: int, spacing: float = 1.0) -> Mesh:
 
 
 def sphere(level: int) -> Mesh:
-    """The unit sphere: an icosahedron whose triangles are cut into four `level` times; 10 * 4^level + 2 vertices.
+    """The unit sphere: an icosahedron whose triangles are divided into four, `level` times. It has 10 * 4^level + 2 vertices.
 
     >>> import ahm
     >>> len(ahm.shapes.sphere(2)[0])
@@ -45,7 +47,10 @@ def sphere(level: int) -> Mesh:
 
 
 def torus(around: int, across: int, radius: float = 1.0, tube: float = 0.4) -> Mesh:
-    """A torus about the z axis: `around` x `across` vertices; row i * across + j lies at angles 2 pi i / around, 2 pi j / across.
+    """A torus around the z axis with `around` x `across` vertices.
+
+    Row i * across + j lies at the angle 2 pi i / around around the axis, and at the angle 2 pi j / across around the tube. `radius`
+    is the distance from the axis to the center of the tube, and `tube` the radius of the tube.
 
     >>> import ahm
     >>> len(ahm.shapes.torus(20, 10)[1])

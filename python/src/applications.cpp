@@ -1,4 +1,4 @@
-// Strokes, spread points and means.
+// Strokes, farthest points and means.
 #include <utility>
 
 #include "ahm/applications/cells.hpp"
@@ -18,7 +18,7 @@ SurfaceCurve draw_stroke(const Body& body, const Places& points, std::span<const
                          const StrokeOptions& shape) {
   const Surface& surface = body.surface_for("a stroke");
   for (std::size_t k = 0; k < points.size(); ++k)
-    naming(points.where(k), [&] { return surface.source(body.point(points.places[k])); });  // checks
+    naming(points.where(k), [&] { return surface.source(body.point(points.places[k])); });  // validates the point
   return naming(points.name, [&] {
     return positions.empty() ? draw_curve(surface, points.places, shape)
                              : draw_curve(surface, points.places, positions, shape.closed);
@@ -36,8 +36,8 @@ LogMap solve(const Maker& maker, const SurfaceCurve& curve, const MapOptions& op
   return maker.body()->geodesics().log_map(curve.samples, exact).map;
 }
 
-/// A log map from a curve, and the curve as drawn: points, length, gap, jump.
 /// @param positions  empty, or (u, v) of every point
+/// @return the log map from a curve; points, length, gap and jump of the curve on the surface (`SurfaceCurve`)
 py::tuple stroke(const py::object& maker, const py::tuple& points, const Doubles& positions, bool closed, bool circle,
                  const py::dict& options, const py::object& report) {
   MapOptions o;
@@ -61,8 +61,9 @@ py::tuple stroke(const py::object& maker, const py::tuple& points, const Doubles
   return py::make_tuple(map, owned(std::move(curve.points)), curve.length, curve.gap, curve.jump);
 }
 
-/// Rows.
-/// @param tolerance  of exact distances; None: by a front
+/// Farthest point sampling.
+/// @param tolerance  maximum relative error of exact distances; None: distances by a front
+/// @return rows
 py::array farthest(const BodyPtr& body, const py::tuple& first, Index count, const py::object& tolerance,
                    const py::object& report) {
   const Places at = places(first);
@@ -80,15 +81,15 @@ py::array farthest(const BodyPtr& body, const py::tuple& first, Index count, con
   }));
 }
 
-/// A center and what lies there.
+/// A center, its point on the surface, and a map from there.
 struct FoundCenter {
   Center center;
   std::optional<Vec3> position;
   std::optional<FacePoint> face;
-  std::vector<double> seen;  ///< coordinates of all points in a map from the center
+  std::vector<double> seen;  ///< coordinates of all points in the log map from the center, d numbers per point
 };
 
-/// Where a center lies in space.
+/// Position of a center in space, world units; none if the surface has no positions.
 std::optional<Vec3> position_of(const Body& body, const Center& center) {
   if (body.grid() != nullptr) {
     Vec3 p = body.grid()->position(center.vertex);
@@ -104,7 +105,7 @@ std::optional<Vec3> position_of(const Body& body, const Center& center) {
   return frame->origin + center.offset[0] * frame->x + center.offset[1] * frame->y;
 }
 
-/// Puts a center on the surface, and looks at the points from there.
+/// Projects a center to the surface, and computes the coordinates of the points in the log map from there.
 void place(const Maker& by, std::span<const Source> points, double radius, FoundCenter& found) {
   const Body& body = *by.body();
   Source source = source_at(found.center);
@@ -131,7 +132,8 @@ void place(const Maker& by, std::span<const Source> points, double radius, Found
     for (double z : map.coordinates(p)) found.seen.push_back(z);
 }
 
-/// row or None, offset, position or None, spread, maps, converged, face or None, its weights, points seen from the center.
+/// @return row or None, offset, position or None, spread, maps, converged, face or None, barycentric coordinates or None,
+/// coordinates of the points in the log map from the center (k x d)
 py::tuple center(const py::object& maker, const py::tuple& points, const Doubles& weights, bool median,
                  const py::object& start, const py::dict& options, const py::object& report) {
   CenterOptions o;

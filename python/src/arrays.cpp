@@ -20,7 +20,7 @@ py::array array_over(const py::dtype& type, const Shape& shape, const void* data
 }
 
 std::span<const Vec3> vectors(const Doubles& array) {
-  if (array.ndim() != 2 || array.shape(1) != 3) throw py::value_error("an array of shape (n, 3) was expected");
+  if (array.ndim() != 2 || array.shape(1) != 3) throw py::value_error("expected an array of shape (n, 3)");
   return {reinterpret_cast<const Vec3*>(array.data()), static_cast<std::size_t>(array.shape(0))};
 }
 

@@ -31,14 +31,14 @@ SurfacePoint Body::point(const Place& place) const {
 
 SurfaceSource Body::source(const Place& place, const std::optional<Vec3>& u_axis) const {
   if (surface_) return surface_->source(point(place), u_axis);
-  if (u_axis) throw InvalidArgument("a u axis needs a mesh or a cloud; grids and graphs keep the axes they have");
+  if (u_axis) throw InvalidArgument("a u axis needs a mesh or a cloud; the axes of grids and graphs are fixed");
   if (const auto* position = std::get_if<Vec3>(&place)) {
-    if (grid_ == nullptr) throw InvalidArgument("a position needs a surface or a grid; name a row");
+    if (grid_ == nullptr) throw InvalidArgument("a position needs a mesh, a cloud or a grid; use a row");
     const auto d = static_cast<std::size_t>(grid_->dimension());
     return {grid_->source_at(std::span(*position).first(d)), *position, std::nullopt, std::nullopt};
   }
   const auto* row = std::get_if<Row>(&std::get<SurfacePoint>(place));
-  if (row == nullptr) throw InvalidArgument("grids and graphs have no faces and edges to stand on; name a row");
+  if (row == nullptr) throw InvalidArgument("on grids and graphs only rows can be used; use a row");
   SurfaceSource result{Source::at_vertex(vertex(*row)), {}, graph_->frame(row->index), *row};
   if (grid_ != nullptr) result.position = grid_->position(Vertex(row->index));
   if (grid_ == nullptr && result.frame) result.position = result.frame->origin;
@@ -73,7 +73,7 @@ Vertex Body::vertex_near(const Place& place) const {
     corners.assign(face.begin(), face.end());
   } else {
     const auto& edge = std::get<EdgePoint>(point);
-    all.source(edge);  // checks that there is one
+    all.source(edge);  // throws if there is no such edge
     corners = {edge.from.index, edge.to.index};
   }
   const auto away = [&](Index row) { return distance(all.positions()[row], position); };

@@ -1,5 +1,5 @@
 /// \file
-/// What Python calls a surface: a graph with rows and, of surfaces, everything that leads from the input to it.
+/// The C++ object behind a Python surface: a tangent graph with rows. Meshes and clouds also have a `Surface`.
 #pragma once
 
 #include <memory>
@@ -17,22 +17,22 @@
 
 namespace ahm::python {
 
-/// A point as Python names it: a position in space, or a point in terms of the input.
+/// A point from Python: a position in space, or a point of the input.
 using Place = std::variant<Vec3, SurfacePoint>;
 
-/// Points from Python, decoded, and the name of the argument they came as.
+/// Points from Python, and the name of their argument.
 struct Places {
   std::string name;
-  bool single = false;  ///< so that a message says "source", not "sources[0]"
+  bool single = false;  ///< whether messages name the argument without an index: "source", not "sources[0]"
   std::vector<Place> places;
 
   std::string where(std::size_t k) const { return single ? name : name + "[" + std::to_string(k) + "]"; }
   std::size_t size() const { return places.size(); }
-  /// Whether nothing but rows was named: many of them need no sources.
+  /// Whether all points are rows. Functions then use vertices, which are cheaper than sources.
   bool all_rows() const;
 };
 
-/// Shared by everything that is made from it. Immutable.
+/// A surface, grid or graph. Immutable; shared by the solvers and maps that use it.
 class Body {
  public:
   explicit Body(std::unique_ptr<const Surface> surface) : surface_(std::move(surface)) {}
@@ -40,38 +40,38 @@ class Body {
   explicit Body(std::unique_ptr<const TangentGraph> graph) : graph_(std::move(graph)) {}
 
   const TangentGraph& graph() const { return surface_ ? surface_->graph() : *graph_; }
-  /// Null of grids and graphs, whose rows are their vertices.
+  /// Null for grids and graphs, whose rows are their vertices.
   const Surface* surface() const { return surface_.get(); }
-  /// @throws InvalidArgument naming `what` where this is none
+  /// The surface. @throws InvalidArgument (a grid or graph; the message begins with `what`)
   const Surface& surface_for(const char* what) const;
   const grid::GridGraph* grid() const { return grid_; }
   Index rows() const { return surface_ ? surface_->rows().row_count() : graph_->size(); }
-  /// The vertex of the first row that has one.
-  /// All of a graph without a surface.
+  /// The vertices that have rows; empty for grids and graphs, where all vertices have one.
   std::vector<Vertex> vertices_with_rows() const {
     return surface_ ? ahm::vertices_with_rows(surface_->rows()) : std::vector<Vertex>();
   }
+  /// The vertex of the first row that has one.
   Vertex first() const { return surface_ ? first_vertex(surface_->rows()) : Vertex(0); }
 
   /// The vertex of a row. @throws InvalidArgument
   Vertex vertex(Row row) const { return surface_ ? surface_->vertex(row) : Vertex(row.index); }
   std::optional<Row> row(Vertex vertex) const;
 
-  /// A source at a point, its u axis along a vector of space.
+  /// A source at a point, with its u axis along a vector in space. @throws InvalidArgument
   SurfaceSource source(const Place& place, const std::optional<Vec3>& u_axis = {}) const;
   std::vector<SurfaceSource> sources(const Places& places, const std::optional<Vec3>& u_axis = {}) const;
-  /// The same without where they lie.
+  /// The sources without their positions and frames.
   std::vector<Source> plain_sources(const Places& places, const std::optional<Vec3>& u_axis = {}) const;
-  /// The point of the input, and that one only where a position was named. @throws InvalidArgument (no surface)
+  /// The point of the input; for a position, the nearest point of the surface. @throws InvalidArgument (a position on a grid or graph)
   SurfacePoint point(const Place& place) const;
-  /// The vertex at a row, at the row nearest to a position, or at the nearest corner of the face or edge of a point.
+  /// The vertex of a row, of the row nearest to a position, or of the nearest corner of the face or edge of a point.
   /// @throws InvalidArgument
   Vertex vertex_near(const Place& place) const;
   std::vector<Vertex> vertices_near(const Places& places) const;
 
-  /// Made by the first call. @throws as `ExactGeodesics`
+  /// The exact geodesics of the surface. The first call creates them. @throws as `ExactGeodesics`
   const ExactGeodesics& geodesics() const;
-  /// Of these. Made by the first call.
+  /// Conversion of points of `geodesics()` to faces of the input. The first call creates it.
   const InputFaces& input_faces() const;
 
  private:
@@ -85,12 +85,13 @@ class Body {
 
 using BodyPtr = std::shared_ptr<Body>;
 
-/// @param given  (name, single, kinds, indices, counts, values): per point the kind (0 row, 1 position, 2 in a face, 3 on an
-/// edge), its row, face or first row, how many of its row of `values` count, and these: a position, barycentric
-/// coordinates, or the edge's second row and t
+/// Decodes points that `_places.py` has packed.
+/// @param given  (name, single, kinds, indices, counts, values), with one entry per point in the last four:
+/// kinds: 0 row, 1 position, 2 point in a face, 3 point on an edge; indices: the row, the face, or the first row of the edge;
+/// values, of which counts[k] are used: a position, barycentric coordinates, or the second row of the edge and t
 Places places(const py::tuple& given);
 
-/// None, or three numbers.
+/// Converts None or an array of three numbers.
 std::optional<Vec3> optional_vector(const py::object& given);
 
 }  // namespace ahm::python

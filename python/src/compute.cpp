@@ -22,17 +22,17 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto between_signals = 20ms;  ///< how long a signal waits for its handler
-constexpr auto grace = 60ms;            ///< how long a stopped computation may take to notice
+constexpr auto between_signals = 20ms;  ///< interval at which signal handlers run
+constexpr auto grace = 60ms;            ///< how long a computation may run after a request to stop
 
-/// The thread that ends the interpreter, once it does.
+/// The thread that ends the interpreter; none until `end` is called.
 std::atomic<std::thread::id> ender;
 
-/// How many threads take the interpreter lock again and were not told that it ends. None of them in a forked child.
+/// Number of threads that are about to take the interpreter lock again; `end` waits for them. A forked child has none of them.
 std::atomic<int> returning = 0;
 [[maybe_unused]] const int at_fork = pthread_atfork(nullptr, nullptr, [] { returning = 0; });
 
-/// One computation. Made, looked at and destroyed with the interpreter lock; only `thread` works without.
+/// One computation. All members are called with the interpreter lock held; only `thread_` runs without it.
 class Job {
  public:
   Job(py::object keep, std::function<void(const Progress&)> work, bool reports)
@@ -47,7 +47,7 @@ class Job {
     try {
       thread_ = std::thread([this] { perform(); });
     } catch (const std::system_error&) {
-      perform();  // no thread to be had: on this one
+      perform();  // no thread is available: run on this one
     }
   }
   ~Job() {
@@ -61,7 +61,7 @@ class Job {
     const std::scoped_lock lock(mutex_);
     return done_;
   }
-  /// Without the interpreter lock. @return whether it is done
+  /// Waits without the interpreter lock. @return whether the job is done
   bool wait(std::chrono::milliseconds time) {
     const Unlocked unlocked;
     std::unique_lock lock(mutex_);
@@ -103,10 +103,10 @@ class Job {
   std::thread thread_;
 };
 
-/// Those of this process. A forked child has none of its parent's threads: it forgets them.
+/// Jobs of this process. A forked child has none of its parent's threads, so it discards their jobs.
 struct Jobs {
-  std::vector<std::shared_ptr<Job>> background;  ///< given up, and not at their end yet
-  std::vector<std::shared_ptr<Job>> waited_for;
+  std::vector<std::shared_ptr<Job>> background;  ///< abandoned jobs that still run
+  std::vector<std::shared_ptr<Job>> waited_for;  ///< jobs that a thread waits for
   pid_t process = getpid();
 };
 Jobs& jobs() {
@@ -120,7 +120,7 @@ void give_up(const std::shared_ptr<Job>& job) {
   if (!job->wait(grace)) jobs().background.push_back(job);
 }
 
-/// While a thread waits for a job.
+/// Lists a job in `Jobs::waited_for` while a thread waits for it.
 class Waiting {
  public:
   explicit Waiting(const std::shared_ptr<Job>& job) : job_(job) { jobs().waited_for.push_back(job); }
@@ -154,7 +154,7 @@ void run(const py::object& report, py::object keep, std::function<void(const Pro
 Unlocked::Unlocked() : state_(PyEval_SaveThread()) {}
 
 Unlocked::~Unlocked() {
-  // Whoever takes the lock of an interpreter that has ended is ended himself, in the middle of C++.
+  // Python ends a thread that takes the lock of an ended interpreter, in the middle of C++ code. Such threads sleep instead.
   ++returning;
   if (const std::thread::id ending = ender; ending != std::thread::id() && ending != std::this_thread::get_id()) {
     --returning;
@@ -180,7 +180,7 @@ void end() {
   }
   if (std::ranges::all_of(all, [](const auto& job) { return job->done(); })) return;
 #ifdef __GLIBC__
-  // What still works must not find the library's and its libraries' static objects destroyed.
+  // Jobs that still run must not use destroyed static objects, so the process exits without destroying them.
   on_exit(
       [](int status, void*) {
         std::fflush(nullptr);

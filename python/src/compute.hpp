@@ -1,5 +1,5 @@
 /// \file
-/// Long computations under Python: without the interpreter lock, reporting, and ended by Ctrl-C.
+/// Runs long computations for Python: without the interpreter lock, with progress reports, and interruptible by Ctrl-C.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -16,15 +16,15 @@ namespace ahm::python {
 
 namespace py = pybind11;
 
-/// Runs `work` on a thread of its own. This thread lets go of the interpreter lock, and now and then takes it to run
-/// Python's signal handlers and to call `report(stage, fraction)`. An exception of either asks the work to stop and is
-/// raised at once; work that does not heed that goes on in the background, unseen, until its end.
+/// Runs `work` on a new thread. The calling thread releases the interpreter lock, and takes it regularly to run Python's
+/// signal handlers and to call `report(stage, fraction)`. If one of these raises an exception, the work is requested to stop
+/// and the exception is raised at once. Work that cannot be stopped continues in the background until its end.
 /// @param report  a callable, or None
-/// @param keep    what must live as long as the work does: the arrays it reads
-/// @param work    holds no Python object
+/// @param keep    objects that must live as long as the work, such as the arrays it reads
+/// @param work    must not contain Python objects
 void run(const py::object& report, py::object keep, std::function<void(const Progress&)> work);
 
-/// What `work(progress)` returns, as of `run`.
+/// Returns the result of `work(progress)`, computed by `run`.
 template <class Work>
 auto compute(const py::object& report, py::object keep, Work work) {
   using Result = decltype(work(std::declval<const Progress&>()));
@@ -34,7 +34,7 @@ auto compute(const py::object& report, py::object keep, Work work) {
   return std::move(**result);
 }
 
-/// What `work()` returns, reported as a stage of one step: for work that reports nothing itself.
+/// Returns the result of `work()` and reports it as a stage of one step. For work that does not report progress itself.
 template <class Work>
 auto in_one_step(const Progress& progress, std::string_view stage, const Work& work) {
   progress.step(stage, 0);
@@ -43,13 +43,13 @@ auto in_one_step(const Progress& progress, std::string_view stage, const Work& w
   return result;
 }
 
-/// As `compute`, of what cannot be told to stop.
+/// Returns the result of `work()`, computed by `run`. For work that cannot be stopped and does not report progress.
 template <class Work>
 auto compute(Work work) {
   return compute(py::none(), py::none(), [work = std::move(work)](const Progress&) mutable { return work(); });
 }
 
-/// Without the interpreter lock while it lives. Threads that would take it from an interpreter that ends sleep for ever.
+/// Releases the interpreter lock during its lifetime. If another thread ends the interpreter, the destructor never returns.
 class Unlocked {
  public:
   Unlocked();
@@ -61,8 +61,8 @@ class Unlocked {
   PyThreadState* state_;
 };
 
-/// Before the interpreter ends: stops whatever still works, in the background and for threads that nobody waits for. What
-/// does not heed that is cut off when the process exits (with the GNU library; else it is waited for).
+/// Stops all computations that still run. Python calls this before the interpreter ends (atexit). With the GNU C library, the
+/// process exit ends computations that cannot be stopped; otherwise `end` waits for them.
 void end();
 
 }  // namespace ahm::python

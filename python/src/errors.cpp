@@ -9,7 +9,7 @@
 namespace ahm::python {
 namespace {
 
-/// Never freed: Python's classes outlive the module.
+/// The exception classes. They are never freed, because Python's classes outlive the module.
 struct Classes {
   PyObject *error, *argument, *graph, *geometry, *definite, *exhausted, *io, *cancelled;
 };
@@ -29,21 +29,21 @@ struct Advice {
   std::string_view fault, remedy;
 };
 
-/// What to do, in Python's terms.
+/// Remedies by fault, in terms of the Python package. They replace those of the C++ messages.
 constexpr Advice advices[] = {
     {"collinear_faces", "remove them, or use method 'heat'"},
-    {"diffusion_time_range", "give a t_coef near 1"},
+    {"diffusion_time_range", "use a t_coef near 1"},
     {"map_without_frames", "make it with frames=True"},
     {"map_without_spread", "make it with spread=True and distances=True"},
     {"no_flat_triangles", "use method 'heat'"},
-    {"non_finite", "drop such points with drop_non_finite=True"},
+    {"non_finite", "drop these points with drop_non_finite=True"},
     {"non_manifold_edges", "repair them, or cut the mesh there with non_manifold='split'"},
     {"non_manifold_vertices", "repair them, or split them with non_manifold='split'"},
     {"polygons_not_refined", "make the mesh with discretization='refined', or use method 'heat'"},
     {"polygons_too_large", "make the mesh with discretization='refined'"},
     {"twisted_faces", "make the mesh with discretization='polygons'"},
     {"windows_without_end", "repair the mesh, or use method 'heat'"},
-    {"windows_lost", "repair the needles there, use tolerance=1e-9, or method 'heat'"},
+    {"windows_lost", "repair the needle triangles there, use tolerance=1e-9, or use method 'heat'"},
 };
 
 std::string worded(const Error& error) {
@@ -53,7 +53,7 @@ std::string worded(const Error& error) {
 }
 
 void raise(PyObject* type, const Error& error) {
-  const std::string words = worded(error);  // may name a file, whose name may be any bytes
+  const std::string words = worded(error);  // may contain a file name, which may be any bytes
   const py::object text = py::reinterpret_steal<py::object>(
       PyUnicode_DecodeUTF8(words.data(), static_cast<py::ssize_t>(words.size()), "surrogateescape"));
   if (!text) return;
@@ -94,19 +94,19 @@ void translate(std::exception_ptr thrown) {
 
 void add_errors(py::module_& module) {
   PyObject* error = add(module, "Error", PyExc_Exception, nullptr,
-                        "Base of all exceptions of this package. `fault` names some of them, for programs.");
+                        "Base class of all exceptions of this package. `fault` identifies some errors, for programs.");
   py::handle(error).attr("fault") = "";
   classes = {error,
              add(module, "InvalidArgument", error, PyExc_ValueError, "An argument outside its documented range."),
-             add(module, "InvalidGraph", error, PyExc_ValueError, "A graph breaks one of its laws."),
+             add(module, "InvalidGraph", error, PyExc_ValueError, "A graph violates the graph contract."),
              add(module, "InvalidGeometry", error, PyExc_ValueError,
-                 "Geometry (mesh, cloud, grid) that no graph can be built from."),
+                 "No graph can be built from the geometry (mesh, cloud, grid)."),
              add(module, "NotPositiveDefinite", error, PyExc_RuntimeError,
-                 "An operator is not positive definite, or its factorization failed its own check."),
+                 "A matrix is not positive definite, or the check of its factorization failed."),
              add(module, "ResourceExhausted", error, PyExc_MemoryError,
-                 "Memory or an index range does not suffice for the request."),
+                 "The request exceeds the memory or the range of indices."),
              add(module, "IoError", error, PyExc_OSError, "A file cannot be read or written."),
-             add(module, "Cancelled", error, PyExc_RuntimeError, "A computation was stopped.")};
+             add(module, "Cancelled", error, PyExc_RuntimeError, "A computation was canceled.")};
   py::register_exception_translator(translate);
 }
 

@@ -1,5 +1,5 @@
 /// \file
-/// The library's exceptions as Python's, and errors that name an argument.
+/// Python exceptions for the library's exceptions, and errors that name an argument.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -10,13 +10,14 @@ namespace ahm::python {
 
 namespace py = pybind11;
 
-/// Adds the classes to the module, and translates.
+/// Adds the exception classes to the module, and registers their translation.
 void add_errors(py::module_& module);
 
-/// Calls `body`; an `InvalidArgument` of the library gets `where` (as "sources[3]") in front of its text.
+/// Calls `body`. Prepends `where`, for example "sources[3]", to the message of an `InvalidArgument`.
 template <class Body>
 auto naming(const std::string& where, const Body& body) -> decltype(body());
 
+/// Rethrows the current exception. Prepends `where` to the message of an `InvalidArgument`.
 [[noreturn]] void rethrow_naming(const std::string& where);
 
 template <class Body>

@@ -1,4 +1,4 @@
-// Transport, extension and distance, by rows; and the factored operators themselves.
+// Parallel transport, extension of scalars, distances and curvature, by rows.
 #include <utility>
 
 #include "ahm/error.hpp"
@@ -15,7 +15,7 @@
 namespace ahm::python {
 namespace {
 
-/// A field by rows: of the first vertex of each.
+/// Converts a field from vertices to rows. Each row gets the value of its first vertex.
 VertexField by_rows(const Body& body, VertexField field) {
   if (body.surface() == nullptr) return field;
   const auto width = static_cast<std::size_t>(field.width);
@@ -31,25 +31,26 @@ VertexField by_rows(const Body& body, VertexField field) {
   return result;
 }
 
-/// Components in frames as vectors of space; and back.
+/// Converts vectors at all vertices from components in their frames to vectors in space.
 std::vector<double> in_space(const TangentGraph& graph, const VertexField& field) {
   std::vector<double> result(3 * field.status.size(), nan);
   for (std::size_t v = 0; v < field.status.size(); ++v) {
     const auto frame = graph.frame(static_cast<Index>(v));
-    if (!frame) throw InvalidArgument("vectors: the surface has no frames in space; give components in its frames");
+    if (!frame) throw InvalidArgument("vectors: the surface has no frames in space; use components in its frames");
     for (std::size_t c = 0; c < 3; ++c)
       result[3 * v + c] = field.values[2 * v] * frame->x[c] + field.values[2 * v + 1] * frame->y[c];
   }
   return result;
 }
 
-/// @param frame  of point k, or none
+/// Converts vectors in space to components in frames.
+/// @param frame_of  returns the frame of point k, or none
 template <class FrameOf>
 std::vector<double> in_frames(std::span<const double> vectors, const FrameOf& frame_of) {
   std::vector<double> result;
   for (std::size_t k = 0; 3 * k < vectors.size(); ++k) {
     const std::optional<Frame> frame = frame_of(k);
-    if (!frame) throw InvalidArgument("vectors: the surface has no frames in space; give components in its frames");
+    if (!frame) throw InvalidArgument("vectors: the surface has no frames in space; use components in its frames");
     for (const Vec3* axis : {&frame->x, &frame->y}) {
       double sum = 0;
       for (std::size_t c = 0; c < 3; ++c) sum += (*axis)[c] * vectors[3 * k + c];
@@ -78,7 +79,8 @@ py::tuple extend(const SolverPtr& solver, const py::tuple& points, const Doubles
   }));
 }
 
-/// Vectors at rows, or at points anywhere: those of space in the axes of each.
+/// Parallel transports vectors from points to all vertices.
+/// @param space  whether the vectors are in space; otherwise they are components in the frame of each point
 VertexField carried(const Solver& by, const Places& at, std::span<const double> given, bool space) {
   const Body& body = *by.body;
   if (at.all_rows()) {
@@ -106,7 +108,7 @@ py::tuple transport(const SolverPtr& solver, const py::tuple& points, const Doub
   }));
 }
 
-/// All sources in one.
+/// Joins several sources to one.
 Source together(const Body& body, const Places& at) {
   if (at.size() == 1) return body.sources(at)[0].source;
   return at.all_rows() ? Source::at_vertices(body.vertices_near(at)) : Source::joined(body.plain_sources(at));
@@ -126,7 +128,7 @@ py::tuple heat_distance(const SolverPtr& solver, const py::tuple& sources, const
   return py::make_tuple(distance[0], arrays(std::move(found.second))[0]);
 }
 
-/// Distance, and the number of the nearest source or -1.
+/// @return distance of each row, and the number of its nearest source or -1
 py::tuple front_distance(const BodyPtr& body, const py::tuple& sources, double radius, const py::object& report) {
   const Places at = places(sources);
   auto found = compute(report, py::none(), [=](const Progress& progress) {
@@ -151,14 +153,14 @@ py::tuple front_distance(const BodyPtr& body, const py::tuple& sources, double r
   return py::make_tuple(owned(std::move(found.first)), owned(std::move(found.second)));
 }
 
-/// tau per vertex, in squared graph units.
+/// Diffusion time tau of each vertex, in squared graph units.
 py::array taus(const BodyPtr& body, double t_coef) {
   return owned(compute([=] { return diffusion_times(ComponentScales(body->graph()), t_coef); }));
 }
 
 py::tuple curvature(const BodyPtr& body, unsigned threads, const py::object& report) {
   if (body->graph().dimension() != 2 || !body->graph().frame(0))
-    throw InvalidArgument("surface: it has no tangent planes in space; a mesh or a cloud has");
+    throw InvalidArgument("surface: this one has no tangent planes in space; use a mesh or a cloud");
   PrincipalCurvatures k = compute(report, py::none(), [body, threads](const Progress& progress) {
     return in_one_step(progress, "curvature", [&] { return curvature_directions(body->graph(), threads); });
   });

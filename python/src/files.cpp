@@ -1,4 +1,4 @@
-// Files of meshes and clouds, as arrays.
+// Reads files of meshes and clouds as arrays.
 #include "ahm/io/read.hpp"
 #include "arrays.hpp"
 #include "compute.hpp"
@@ -7,7 +7,7 @@
 namespace ahm::python {
 namespace {
 
-/// @param name  bytes, as the file system has them
+/// @param name  the encoded file name
 py::dict read_file(const py::bytes& name) {
   const std::string path = name;
   using namespace py::literals;

@@ -1,4 +1,4 @@
-// Exact distances, shortest paths and straightest geodesics over the flat triangles of meshes.
+// Exact distances, shortest paths and straightest geodesics: over the flat triangles of meshes, or the tangent planes of clouds.
 #include <array>
 #include <utility>
 
@@ -12,7 +12,7 @@
 namespace ahm::python {
 namespace {
 
-/// Checked: each lies on the triangles.
+/// The points of the surface. @throws InvalidArgument (a point that is not on the triangles)
 std::vector<SurfacePoint> points_of(const Body& body, const Places& at) {
   std::vector<SurfacePoint> result;
   for (std::size_t k = 0; k < at.size(); ++k)
@@ -29,10 +29,10 @@ std::vector<exact::MeshPoint> mesh_points(const Body& body, const Places& at) {
   return result;
 }
 
-/// Distances and numbers of the nearest sources (-1: none), of targets or of all rows.
+/// Distances and nearest sources of targets, or of all rows.
 struct Distances {
-  std::vector<double> distance;
-  std::vector<Index> source;
+  std::vector<double> distance;  ///< world units; NaN where there is none
+  std::vector<Index> source;     ///< number of the nearest source; -1: none
 
   void add(Status status, double value, Index nearest) {
     distance.push_back(status == Status::ok ? value : nan);
@@ -40,7 +40,7 @@ struct Distances {
   }
 };
 
-/// Of targets, or of all rows: an exact map knows lengths in units of the triangles.
+/// Exact distances of targets, or of all rows without targets. The lengths of `exact::ExactMap` are in units of the triangles.
 Distances exact_distances(const Body& body, const Places& from, const std::optional<Places>& to, double radius,
                           double tolerance, const Progress& progress) {
   const exact::PolyhedralSurface& flat = body.geodesics().triangles().surface;
@@ -81,13 +81,13 @@ py::tuple exact_distance(const BodyPtr& body, const py::tuple& sources, const py
   return py::make_tuple(owned(std::move(found.distance)), owned(std::move(found.source)));
 }
 
-/// A curve as Python gets it: points in space and in the input's faces, length; None where there is no way.
+/// A path for Python: points in space and in the faces of the input. Python gets None if there is no path.
 struct Curve {
-  bool ok = true;
+  bool ok = true;  ///< whether there is a path
   std::vector<Vec3> points;
-  std::vector<Index> faces;
-  std::vector<double> weights;
-  std::vector<py::ssize_t> corners;  ///< weights of each point
+  std::vector<Index> faces;          ///< face of the input of each point
+  std::vector<double> weights;       ///< barycentric coordinates of all points, one point after the other
+  std::vector<py::ssize_t> corners;  ///< number of barycentric coordinates of each point
   double length = 0;
   bool complete = true;
 
@@ -108,7 +108,7 @@ struct Curve {
   static py::ssize_t length_of(const FacePoint& point) { return python::length(point.barycentric); }
 };
 
-/// (k, 3) where all faces of the surface are triangles, else a list.
+/// Barycentric coordinates: a (k, 3) array if all faces are triangles, otherwise a list of arrays.
 py::object weights_of(const Body& body, Curve& curve) {
   const FaceList faces = body.surface()->faces();
   if (faces.vertices.size() == 3 * faces.size()) {
@@ -131,7 +131,7 @@ py::object arrays(const Body& body, Curve&& curve) {
                         curve.complete);
 }
 
-/// Of a surface without faces.
+/// Whether the surface has no faces, so that paths run over tangent planes.
 bool has_planes_alone(const Body& body) { return body.surface() != nullptr && body.surface()->faces().size() == 0; }
 
 py::object arrays(SurfacePath&& line) {
@@ -145,12 +145,12 @@ std::vector<SurfacePoint> plane_points(const Body& body, const Places& at) {
   return result;
 }
 
-/// What takes faces is refused.
+/// Rejects an option that requires faces. @throws InvalidArgument if `given`
 void refuse(bool given, const std::string& name) {
-  if (given) throw InvalidArgument(name + ": takes faces, which a cloud does not have");
+  if (given) throw InvalidArgument(name + ": requires faces, which a cloud does not have");
 }
 
-/// From stop to stop over tangent planes.
+/// The path from stop to stop over tangent planes.
 py::object plane_path(const BodyPtr& body, const Places& at, bool closed, const py::object& report) {
   return arrays(compute(report, py::none(), [=](const Progress& progress) {
     std::vector<SurfacePoint> stops = plane_points(*body, at);
@@ -169,7 +169,7 @@ py::object plane_path(const BodyPtr& body, const Places& at, bool closed, const 
   }));
 }
 
-/// From each source to the target beside it, over tangent planes.
+/// Paths from source k to target k over tangent planes.
 py::list plane_paths(const BodyPtr& body, const Places& from, const Places& to, const py::object& report) {
   std::vector<SurfacePath> found = compute(report, py::none(), [=](const Progress& progress) {
     const std::vector<SurfacePoint> starts = plane_points(*body, from), ends = plane_points(*body, to);
@@ -185,7 +185,8 @@ py::list plane_paths(const BodyPtr& body, const Places& from, const Places& to, 
   return result;
 }
 
-/// From stop to stop; `fast`: locally shortest. Status and no points of the first leg that is not there.
+/// The path from stop to stop. If a leg does not exist, returns its status and no points.
+/// @param fast  uses locally shortest paths
 exact::GeodesicPath through(const ExactGeodesics& geodesics, const std::vector<SurfacePoint>& stops, bool fast,
                             const Progress& progress) {
   exact::GeodesicPath whole;
@@ -200,7 +201,7 @@ exact::GeodesicPath through(const ExactGeodesics& geodesics, const std::vector<S
   return whole;
 }
 
-/// @param taut  pulled taut: only the ends stay, of a closed path nothing
+/// @param taut  pulls the path taut: only its ends are fixed, and no point of a closed path is
 py::object path(const BodyPtr& body, const py::tuple& stops, bool closed, bool fast, bool taut,
                 const py::object& report) {
   const Places at = places(stops);
@@ -216,7 +217,7 @@ py::object path(const BodyPtr& body, const py::tuple& stops, bool closed, bool f
       throw InvalidArgument(at.name + ": " + std::to_string(points.size()) + " point; a path needs at least 2");
     if (closed) points.push_back(points.front());
     exact::GeodesicPath found = through(geodesics, points, fast, progress);
-    if (taut && found.points.size() > 1) found = geodesics.shortened(found.points, closed);  // a point is taut
+    if (taut && found.points.size() > 1) found = geodesics.shortened(found.points, closed);  // a single point is taut
     return Curve(*body, found);
   }));
 }
@@ -227,11 +228,11 @@ py::list listed(const Body& body, std::vector<Curve>&& curves) {
   return result;
 }
 
-/// One path to each target from the nearest source, of one propagation.
+/// The path to each target from the nearest source, by one propagation.
 py::list paths(const BodyPtr& body, const py::tuple& sources, const py::tuple& targets, const py::object& report) {
   const Places from = places(sources), to = places(targets);
   if (has_planes_alone(*body))
-    throw InvalidArgument("pairwise: over a cloud every path has a source of its own; give pairwise=True");
+    throw InvalidArgument("pairwise: on a cloud, paths are computed per pair; use pairwise=True");
   return listed(*body, compute(report, py::none(), [=](const Progress& progress) {
     const exact::PolyhedralSurface& flat = body->geodesics().triangles().surface;
     const double unit = body->geodesics().triangles().length_unit;
@@ -248,7 +249,7 @@ py::list paths(const BodyPtr& body, const py::tuple& sources, const py::tuple& t
   }));
 }
 
-/// One path from each source to the target beside it.
+/// Paths from source k to target k.
 py::list paired_paths(const BodyPtr& body, const py::tuple& sources, const py::tuple& targets, bool fast,
                       const py::object& report) {
   const Places from = places(sources), to = places(targets);

@@ -10,7 +10,7 @@ InputFaces::InputFaces(const ExactGeodesics& geodesics) : geodesics_(geodesics) 
   const FaceList given = surface.faces();
   const std::span<const Index> turned = surface.corner_vertices();
   if (turned.size() != 3 * given.size()) return;
-  // Flat triangles come in the order of the faces, of which those without an area are left out.
+  // The flat triangles are in the order of the faces. Faces without area have none.
   std::size_t face = 0;
   for (Index t = 0; t < flat.face_count(); ++t) {
     std::array<Index, 3> corner{};
@@ -22,7 +22,7 @@ InputFaces::InputFaces(const ExactGeodesics& geodesics) : geodesics_(geodesics) 
       corners_.clear();
       return;
     }
-    // A face that was turned over has its first corner in place and the other two exchanged.
+    // A reversed face keeps its first corner; the other two are exchanged.
     const auto vertex_at = [&](int place) {
       return surface.rows().vertices(Row(given[face][static_cast<std::size_t>(place)]));
     };

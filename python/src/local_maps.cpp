@@ -13,7 +13,7 @@
 namespace ahm::python {
 namespace {
 
-/// By rows; those of graphs and grids are their vertices.
+/// Local maps of sources, with rows as neighbors. The rows of graphs and grids are their vertices.
 template <class From>
 RowLocalMaps to_rows(const Body& body, std::span<const From> sources, const LocalMapOptions& options) {
   if (body.surface()) return row_local_maps(*body.surface(), sources, options);
@@ -52,7 +52,7 @@ py::dict arrays(RowLocalMaps&& maps) {
       "transport"_a = owned<double>(std::move(maps.transports), complex ? Shape{entries, 2} : Shape{entries, d, d}));
 }
 
-/// @param sources  points, or None: all rows
+/// Local maps of points, or of all rows if `sources` is None.
 py::dict local_maps_of(const BodyPtr& body, const py::object& sources, const py::object& u_axis,
                        const py::dict& options, const py::object& report) {
   LocalMapOptions o = local_options(options);
@@ -66,7 +66,7 @@ py::dict local_maps_of(const BodyPtr& body, const py::object& sources, const py:
   }));
 }
 
-/// The neighbourhood of a curve alone: a local map; the curve as drawn, its length.
+/// @return the local map of a curve, the corners of the curve on the surface, its length
 py::tuple local_stroke(const BodyPtr& body, const py::tuple& points, bool closed, bool circle, const py::dict& options,
                        const py::object& report) {
   LocalMapOptions o = local_options(options);

@@ -1,5 +1,5 @@
 /// \file
-/// Solvers, what else makes maps, and log maps, as Python holds them.
+/// The solvers and log maps that Python objects refer to.
 #pragma once
 
 #include <memory>
@@ -16,12 +16,14 @@
 
 namespace ahm::python {
 
+/// A solver by the heat method, and its surface.
 struct Solver {
   BodyPtr body;
   LogMapSolver solver;
 };
 using SolverPtr = std::shared_ptr<Solver>;
 
+/// A solver for polar maps, and its surface.
 struct PolarSolver {
   BodyPtr body;
   PolarMapSolver solver;
@@ -29,16 +31,16 @@ struct PolarSolver {
 };
 using PolarSolverPtr = std::shared_ptr<PolarSolver>;
 
-/// What makes maps for an application: a solver, or the exact geodesics of a body.
+/// Computes maps for applications: by a solver, or by the exact geodesics of a body.
 class Maker {
  public:
   /// @param given  a Solver, a PolarSolver, or a Body and the tolerance of its exact maps
   explicit Maker(const py::object& given);
 
   const BodyPtr& body() const { return solver_ ? solver_->body : polar_ ? polar_->body : body_; }
-  /// Null where maps are polar or exact.
+  /// Null if maps are polar or exact.
   const Solver* solver() const { return solver_.get(); }
-  /// Null where maps are by heat or exact.
+  /// Null if maps are by heat or exact.
   const PolarSolver* polar() const { return polar_.get(); }
   /// @throws as `Body::geodesics`
   AnySolver maps() const {
@@ -46,7 +48,7 @@ class Maker {
     if (polar_) return {polar_->solver, polar_->threads};
     return {body_->geodesics(), exact()};
   }
-  /// Of exact maps: the tolerance.
+  /// Options of exact maps: the tolerance.
   ExactMapOptions exact() const { return {.tolerance = tolerance_, .progress = {}}; }
 
  private:
@@ -56,23 +58,23 @@ class Maker {
   double tolerance_ = 0;
 };
 
-/// A map, and what it is on the rows.
+/// A log map by vertices and by rows.
 struct Map {
-  /// @param given  the map by rows; none: as the surface has it
+  /// @param given  the map by rows; none: computed by `Surface::to_rows`
   Map(BodyPtr on, SurfaceSource from, LogMap made, unsigned threads, std::optional<RowLogMap> given = {});
 
   BodyPtr body;
   SurfaceSource source;
   LogMap map;
-  unsigned threads;        ///< of whatever is computed from it; 0: one per core
-  RowLogMap rows;          ///< empty of grids and graphs, whose rows are their vertices
-  std::vector<double> uv;  ///< rows x 2; empty of grids and graphs
+  unsigned threads;        ///< threads for computations on the map; 0: one per core
+  RowLogMap rows;          ///< empty for grids and graphs, whose rows are their vertices
+  std::vector<double> uv;  ///< (u, v) of each row; empty for grids and graphs
 
-  const Surface& surface() const { return body->surface_for("this"); }
+  const Surface& surface() const { return body->surface_for("this operation"); }
 };
 using MapPtr = std::shared_ptr<Map>;
 
-/// A curve through these points; errors name them.
+/// Draws a curve through points on the surface. Errors name the point.
 /// @param positions  empty, or (u, v) of every point
 SurfaceCurve draw_stroke(const Body& body, const Places& points, std::span<const Vec2> positions,
                          const StrokeOptions& shape);

@@ -25,7 +25,7 @@ Map::Map(BodyPtr on, SurfaceSource from, LogMap made, unsigned threads, std::opt
   rows = given ? *std::move(given) : body->surface()->to_rows(map);
   uv.resize(2 * rows.u.size());
   for (std::size_t r = 0; r < rows.u.size(); ++r) uv[2 * r] = rows.u[r], uv[2 * r + 1] = rows.v[r];
-  if (rows.angle.empty())  // of strokes
+  if (rows.angle.empty())  // maps from curves
     std::ranges::transform(rows.v, rows.u, std::back_inserter(rows.angle),
                            [](double v, double u) { return std::atan2(v, u); });
   rows.u = {}, rows.v = {};
@@ -42,17 +42,17 @@ Maker::Maker(const py::object& given) {
 
 namespace {
 
-/// @throws ResourceExhausted where maps would take far more memory than there is, before any of it is taken
+/// Checks the memory before any is allocated. @throws ResourceExhausted if maps need far more than the machine has
 void check_memory(const TangentGraph& graph) {
   const GraphSize size{graph.size(), graph.dimension(), graph.transport_kind()};
   const double machine = machine_memory();
   const double least =
       std::min(estimate_cost(size, Strategy::global).bytes, estimate_cost(size, Strategy::march).bytes);
-  constexpr double trust = 2;  // of the estimate
+  constexpr double trust = 2;  // the estimate may be too large by this factor
   if (machine > 0 && least > trust * machine)
-    throw ResourceExhausted("maps on " + std::to_string(size.vertices) + " vertices take about " +
-                            detail::number(least / 1e9) + " GB of memory, but there are " +
-                            detail::number(machine / 1e9) + "; make the surface coarser");
+    throw ResourceExhausted("maps on " + std::to_string(size.vertices) + " vertices need about " +
+                            detail::number(least / 1e9) + " GB of memory, but the machine has " +
+                            detail::number(machine / 1e9) + " GB; make the surface coarser");
 }
 
 SolverPtr make_solver(const BodyPtr& body, const py::dict& options, const py::object& report) {
@@ -84,7 +84,7 @@ py::list listed(const std::vector<MapPtr>& maps) {
   return result;
 }
 
-/// One map for each source.
+/// One map per source by the heat method.
 py::list heat_maps(const SolverPtr& solver, const py::tuple& sources, const py::object& u_axis, const py::dict& options,
                    const py::object& report) {
   MapOptions o = map_options(options);
@@ -104,13 +104,13 @@ py::list heat_maps(const SolverPtr& solver, const py::tuple& sources, const py::
   }));
 }
 
-/// One map for each source, several at a time.
-/// @param make  make(place, options): one of them
+/// One map per source, on several threads.
+/// @param make  make(place, options) computes the map of one source
 template <class Options, class Make>
 std::vector<MapPtr> make_each(const Places& from, Options options, unsigned threads, const char* stage,
                               const Make& make) {
   const Progress progress = options.progress;
-  if (from.size() > 1) options.progress.report = {};  // each would begin anew
+  if (from.size() > 1) options.progress.report = {};  // reports of single maps would each begin at 0
   std::vector<MapPtr> result(from.size());
   std::atomic<std::size_t> done = 0;
   detail::parallel_chunks(static_cast<Offset>(from.size()), 1, threads, [&](Offset k, Offset) {
@@ -174,7 +174,7 @@ py::list exact_maps(const BodyPtr& body, const py::tuple& sources, const py::obj
   }));
 }
 
-/// Calls put(row, vertex) for the rows whose numbers are from a vertex.
+/// Calls put(row, vertex) for each row, with the vertex that the row's numbers are from. Skips rows without one.
 template <class Put>
 void for_rows(const Map& map, const Put& put) {
   if (map.body->surface() == nullptr) {
@@ -191,7 +191,7 @@ py::array uv(const MapPtr& m) {
   return viewed<double>(m->map.coordinates(), {m->map.size(), d}, m);
 }
 
-/// Views by row: from the rows of a surface, else from the map.
+/// A view of one number per row: of `rows` on meshes and clouds, otherwise of `vertices`.
 py::array column(const MapPtr& m, const std::vector<double> RowLogMap::*rows, std::span<const double> vertices) {
   const std::span<const double> values =
       m->body->surface() != nullptr ? std::span<const double>(m->rows.*rows) : vertices;
@@ -213,7 +213,7 @@ py::array angle(const MapPtr& m) {
   return owned(std::move(result));
 }
 
-/// One number per vertex, by rows.
+/// Converts `width` numbers per vertex to numbers per row; NaN where a row has no vertex.
 std::vector<double> by_rows(const Map& map, std::span<const double> values, std::size_t width) {
   std::vector<double> result(static_cast<std::size_t>(map.body->rows()) * width, nan);
   for_rows(map, [&](std::size_t row, std::size_t vertex) {
@@ -237,7 +237,7 @@ py::array frames(const MapPtr& m) {
                        {m->body->rows(), d, d});
 }
 
-/// Rows x 2 vectors of space.
+/// The source's u and v axis at each row, as vectors in space.
 std::vector<Vec3> axes_in_space(const Map& map) {
   const auto frames = map.map.frames();
   std::vector<Vec3> result(2 * static_cast<std::size_t>(map.surface().rows().row_count()), Vec3{nan, nan, nan});
@@ -251,7 +251,7 @@ std::vector<Vec3> axes_in_space(const Map& map) {
   return result;
 }
 
-/// The source's axes carried to every row, as vectors of space: rows x 2 x 3.
+/// @return the source's axes at every row, rows x 2 x 3
 py::array axes(const MapPtr& m) {
   require_frames(*m);
   return owned<Vec3, double>(compute([m] { return axes_in_space(*m); }), {m->body->rows(), 2, 3});
@@ -268,7 +268,7 @@ py::array corners(const MapPtr& m) {
   return owned<Vec2, double>(std::move(result), {n, 2});
 }
 
-/// u, v and status at points.
+/// @return (u, v) and status at points
 py::tuple sample(const MapPtr& m, const py::tuple& points) {
   const Places at = places(points);
   const auto found = compute(py::none(), py::none(), [m, at](const Progress& progress) {
@@ -286,7 +286,7 @@ py::tuple sample(const MapPtr& m, const py::tuple& points) {
   return py::make_tuple(owned<Vec2, double>(std::move(values), {n, 2}), owned(std::move(statuses)));
 }
 
-/// Where the source lies and its axes: position, (u, v, normal) or None, row or None.
+/// @return position of the source or None; its u axis, v axis and normal, or None; its row or None
 py::tuple source(const MapPtr& m) {
   const SurfaceSource& s = m->source;
   py::object frame = py::none(), row = py::none();

@@ -1,4 +1,4 @@
-// The extension module ahm._core: thin functions on arrays. What people use stands in python/ahm.
+// The extension module ahm._core: thin functions on arrays. The public interface is in python/ahm.
 #include <pybind11/pybind11.h>
 
 #include "compute.hpp"
@@ -8,7 +8,7 @@
 namespace py = pybind11;
 
 PYBIND11_MODULE(_core, module) {
-  module.doc() = "The C++ library under the package ahm. Not for direct use: its functions trust their arguments.";
+  module.doc() = "The C++ part of the package ahm. Not for direct use: its functions do not check their arguments.";
   module.def("end", &ahm::python::end);
   ahm::python::add_errors(module);
   ahm::python::add_surfaces(module);

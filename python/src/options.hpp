@@ -1,5 +1,5 @@
 /// \file
-/// Options from a dictionary whose keys the Python layer has checked; what is missing or None keeps its default.
+/// Reads options from a dictionary, whose keys the Python layer has checked. Options that are missing or None keep their defaults.
 #pragma once
 
 #include <string>
@@ -12,12 +12,12 @@
 
 namespace ahm::python {
 
-/// The value of a key; none where it is missing or None.
+/// The value of a key; None if the key is missing.
 inline py::object value_of(const py::dict& options, const char* key) {
   return options.contains(key) ? py::object(options[key]) : py::object(py::none());
 }
 
-/// @return whether it was there
+/// Reads an option. @return whether it was present and not None
 template <class T>
 bool read(const py::dict& options, const char* key, T& value) {
   const py::object given = value_of(options, key);
@@ -26,7 +26,8 @@ bool read(const py::dict& options, const char* key, T& value) {
   return true;
 }
 
-/// @throws InvalidArgument naming the key and the choices
+/// Reads an option that is one of several words.
+/// @throws InvalidArgument (another word; the message lists the choices)
 template <class T>
 void read_choice(const py::dict& options, const char* key, T& value,
                  const std::vector<std::pair<std::string, T>>& choices) {
@@ -39,7 +40,7 @@ void read_choice(const py::dict& options, const char* key, T& value,
     }
     known += (known.empty() ? "'" : ", '") + name + "'";
   }
-  throw InvalidArgument(std::string(key) + ": '" + word + "' is none of " + known);
+  throw InvalidArgument(std::string(key) + ": '" + word + "' is not one of " + known);
 }
 
 HeatOptions heat_options(const py::dict& options);

@@ -1,5 +1,5 @@
 /// \file
-/// What each source adds to the module.
+/// The functions by which each source file adds its part to the module.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -19,7 +19,7 @@ void add_geodesics(py::module_& module);
 void add_applications(py::module_& module);
 void add_textures(py::module_& module);
 
-/// {"id", "numbers", "rows", "name"}
+/// A warning as a dictionary with the keys "id", "numbers", "rows", "name" and "text".
 py::dict warning(const Warning& warning);
 
 }  // namespace ahm::python

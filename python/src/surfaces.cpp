@@ -1,4 +1,4 @@
-// Surfaces, grids and graphs from arrays, and what can be asked of them.
+// Builds surfaces, grids and graphs from arrays, and returns their properties.
 #include <array>
 #include <utility>
 
@@ -88,7 +88,7 @@ BodyPtr grid(const Indices& shape, const Doubles& spacing, const Doubles& origin
   });
 }
 
-/// Axes and origins, (n, 4, 3): origin, x, y, normal.
+/// @param array  (n, 4, 3): origin, x axis, y axis and normal of each frame
 std::vector<Frame> frames_of(const Doubles& array) {
   std::vector<Frame> result(static_cast<std::size_t>(array.size() / 12));
   for (std::size_t i = 0; i < result.size(); ++i) {
@@ -134,7 +134,7 @@ py::object faces(const BodyPtr& body) {
                         viewed<Index>(faces.vertices, {length(faces.vertices)}, body));
 }
 
-/// Per vertex; None without.
+/// @return frames of all vertices, (n, 4, 3): origin, x axis, y axis, normal; None if a vertex has none
 py::object frames(const BodyPtr& body) {
   std::vector<Frame> result = compute([=] {
     std::vector<Frame> all;
@@ -166,7 +166,7 @@ py::array row_of_vertex(const BodyPtr& body) {
   return owned(std::move(result));
 }
 
-/// The stars of all vertices, one after the other.
+/// Concatenates the stars of all vertices.
 CsrGraphData rows_of(const TangentGraph& graph) {
   CsrGraphData all;
   all.row_begin = {0};
@@ -182,7 +182,7 @@ CsrGraphData rows_of(const TangentGraph& graph) {
   return all;
 }
 
-/// indptr, indices, weights, logs, transports, masses; lengths in graph units.
+/// @return indptr, indices, weights, logs, transports, masses; lengths in graph units
 py::tuple csr(const BodyPtr& body) {
   const TangentGraph& g = body->graph();
   CsrGraphData all = compute([body] { return rows_of(body->graph()); });
@@ -194,7 +194,7 @@ py::tuple csr(const BodyPtr& body) {
                         owned<double>(std::move(all.transports), layout), owned(std::move(all.masses)));
 }
 
-/// Makes the triangles of exact geodesics now.
+/// Creates the triangles for exact geodesics.
 void lay_out(const BodyPtr& body, const py::object& report) {
   compute(report, py::none(), [body](const Progress& progress) {
     return in_one_step(progress, "triangles", [&] { return &body->geodesics(); });
@@ -222,7 +222,7 @@ py::list warnings(const Body& body) {
   return result;
 }
 
-/// The nearest points: rows of (face or -1, row or -1), weights of the face's corners, positions, distances.
+/// @return for the nearest point of each position: face or -1, row or -1, barycentric coordinates or None, position, distance
 py::tuple closest_points(const BodyPtr& body, const Doubles& positions, const py::object& progress) {
   const auto given = vectors(positions);
   const auto found = compute(progress, positions, [body, given](const Progress& steps) {

@@ -1,4 +1,4 @@
-// Inverse maps and what stands on them: decals and tool paths; atlases.
+// Inverse maps, decals, tool paths and atlases.
 #include <unordered_set>
 #include <utility>
 
@@ -32,7 +32,7 @@ py::array triangles(const InversePtr& map) {
   return viewed<Index>(map->triangles(), {length(map->triangles()), 3}, map);
 }
 
-/// What lies at n coordinates: NaN, and -1, where nothing does.
+/// The points of the surface at n coordinates; NaN and -1 where there is none.
 struct Found {
   explicit Found(std::size_t n)
       : position(n, none), normal(n, none), du(n, none), dv(n, none), weights(n, none), rows(n, Triangle{-1, -1, -1}) {}
@@ -42,7 +42,7 @@ struct Found {
   std::vector<Triangle> rows;
 };
 
-/// Position, normal, du, dv, rows of the triangle and weights, for each (u, v).
+/// @return for each (u, v): position, normal, du, dv, rows of the triangle, barycentric weights
 py::tuple at(const InversePtr& map, const Doubles& uv) {
   const std::span<const double> given = numbers(uv);
   Found found = compute(py::none(), uv, [map, given](const Progress& progress) {
@@ -72,7 +72,7 @@ DecalOptions decal_options(const py::dict& options) {
   return o;
 }
 
-/// points, normals, face_begin, face_vertices, uv, number of hidden triangles.
+/// @return points, normals, face_begin, face_vertices, image coordinates, number of hidden triangles
 py::tuple decal(const InversePtr& map, const py::dict& options) {
   const DecalOptions o = decal_options(options);
   Decal made = compute(py::none(), py::none(), [=](const Progress&) { return make_decal(*map, o); });
@@ -89,8 +89,9 @@ py::array image_coordinates(const InversePtr& map, const py::dict& options) {
       compute(py::none(), py::none(), [=](const Progress&) { return image_coordinates_of_vertices(*map, o); }), {n, 2});
 }
 
-/// position, normal, heading, (u, v), piece, line, arclength, spacing, between; number of pieces, of planned points.
-/// @param of  what the inverse is of
+/// @param of  the map whose inverse `map` is
+/// @return per point: position, normal, heading, (u, v), piece, line, arclength, spacing, between; then the numbers of pieces
+/// and of planned points
 py::tuple coverage(const InversePtr& map, const MapPtr& of, const py::dict& options) {
   CoverageOptions o;
   read(options, "radius", o.radius);
@@ -147,13 +148,13 @@ AtlasAndFaces make(const Maker& by, const std::vector<Vertex>& sources, const Re
   return result;
 }
 
-/// The vertices of charts, each once.
+/// The source vertices of charts. @throws InvalidArgument (two charts with the same source)
 std::vector<Vertex> charted(const Body& body, const Places& at) {
   std::vector<Vertex> vertices = body.vertices_near(at);
   std::unordered_set<Index> seen;
   for (std::size_t k = 0; k < vertices.size(); ++k)
     if (!seen.insert(vertices[k].index).second)
-      throw InvalidArgument(at.where(k) + ": a chart starts at this row already");
+      throw InvalidArgument(at.where(k) + ": another chart already starts at this row");
   return vertices;
 }
 

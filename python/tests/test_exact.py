@@ -231,7 +231,7 @@ def test_paths_over_clouds_go_in_pairs(sphere):
     assert found[0].length > 0 and found[1] is None
     with pytest.raises(ValueError, match="pairwise: .*pairwise=True"):
         ahm.geodesic_paths(cloud, [0], [5, 6])
-    with pytest.raises(ValueError, match="fast: takes faces"):
+    with pytest.raises(ValueError, match="fast: requires faces"):
         ahm.geodesic_paths(cloud, [0], [5], pairwise=True, fast=True)
 
 

@@ -342,5 +342,5 @@ def test_warnings_have_a_sentence(sphere):
 
 def test_log_map_says_what_takes_several_sources(sphere):
     for several in ([3], [3, 4], np.array([[3, 4]])):
-        with pytest.raises(ValueError, match="log_maps takes several"):
+        with pytest.raises(ValueError, match="use log_maps for several"):
             ahm.log_map(sphere, several)

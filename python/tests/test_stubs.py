@@ -96,7 +96,7 @@ def documented():
 @pytest.mark.parametrize("name, thing, text", documented(), ids=lambda x: x if isinstance(x, str) and len(x) < 40 else "")
 def test_texts_tell_every_argument_and_the_errors(name, thing, text):
     """Or say whose they share."""
-    if not re.search(r"[Aa]rguments and errors as of\s+`", text):
+    if not re.search(r"[Aa]rguments and errors as in\s+`", text):
         unknown = [p for p in inspect.signature(thing).parameters if p != "self" and not re.search(rf"\b{p}\b", text)]
         assert not unknown, f"{name} does not tell {unknown}"
         assert "Raises" in text or name == "LocalMaps", f"{name} does not tell its errors"

@@ -76,6 +76,7 @@ def test_functions_take_it_as_a_solver(mesh):
         cells = ahm.cells(solver, [0, 100])
         assert set(np.unique(cells.labels)) <= {-1, 0, 1}
         assert ahm.karcher_mean(solver, [0, 1, 2]) is not None
+    np.testing.assert_array_equal(ahm.cells(solver, [0, 100]).distance, ahm.cells(mesh, [0, 100], method="exact").distance)
     assert repr(solver).startswith("<ahm.SurfaceSolver: exact, on ")
 
 

@@ -257,7 +257,7 @@ TEST(FarthestPoints, AreFoundWithoutLookingAtAllEachTime) {
   std::vector<double> distance(n, std::numeric_limits<double>::infinity());
   std::vector<Vertex> all;
   for (Index i = 0; i < n; ++i) all.emplace_back(i);
-  Farthest farthest(all);
+  FarthestQueue farthest(all);
   Offset changes = 0, looks = 0;
   std::vector<bool> chosen(n, false);
   Vertex next{0};

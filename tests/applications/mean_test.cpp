@@ -279,7 +279,7 @@ TEST(Center, HasTheSpreadOfTheDistances) {
 
 TEST(Center, TurnsWithTheFrames) {
   const CsrGraphData data = sphere_graph(500);
-  const Turned turned = with_frames_turned(data);
+  const TurnedGraph turned = with_frames_turned(data);
   const CsrGraph graph(data), other(turned.data);
   const LogMapSolver solver(graph), other_solver(other);
   const std::array points{Vertex{10}, Vertex{40}, Vertex{90}, Vertex{133}};

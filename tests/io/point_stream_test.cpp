@@ -140,7 +140,7 @@ TEST_F(PointStreams, ReadBinaryPcd) {
   cut.pop_back();
   expect_refused(cut, "cut short", "points.pcd");
   const std::string long_x = "FIELDS x y z\nSIZE 8 4 4\nTYPE I F F\nPOINTS 0\nDATA binary\n";
-  expect_refused(long_x, "whole numbers of 8 bytes", "points.pcd");
+  expect_refused(long_x, "integers of 8 bytes", "points.pcd");
 }
 
 TEST_F(PointStreams, AreOfFormatsThatCanBeReadBlockByBlock) {

@@ -256,7 +256,7 @@ class Page(unittest.TestCase):
         self.assertIn("--method exact", self.text("command"))
         self.shot("method")
         self.js("const r = document.getElementById('radius'); r.value = 'x'; r.dispatchEvent(new Event('change'))")
-        self.wait("document.getElementById('status').textContent.includes('no positive number')")
+        self.wait("document.getElementById('status').textContent.includes('not a positive number')")
 
     def test_tools_draw_on_the_surface(self):
         self.open(self.mesh)

@@ -38,12 +38,12 @@ bool open_browser(const std::string& address) {
   return failure == 0;
 }
 
-void say(std::string_view text) {
+void print_to_stderr(std::string_view text) {
   std::fwrite(text.data(), 1, text.size(), stderr);
   std::fflush(stderr);
 }
 
-void warn(std::string_view text) { say("ahm: warning: " + std::string(text) + "\n"); }
+void warn(std::string_view text) { print_to_stderr("ahm: warning: " + std::string(text) + "\n"); }
 
 void print(std::string_view text) {
   errno = 0;
@@ -66,10 +66,10 @@ std::string bar(double fraction, double seconds) {
     const int filled = static_cast<int>(std::lround(fraction * width));
     return fmt::format("{:#<{}}{:.<{}}", "", filled, "", width - filled);
   }
-  constexpr int way = width - block;
-  const int step = static_cast<int>(seconds * 10) % (2 * way);
-  const int left = step < way ? step : 2 * way - step;
-  return fmt::format("{:.<{}}{:#<{}}{:.<{}}", "", left, "", block, "", way - left);
+  constexpr int travel = width - block;
+  const int step = static_cast<int>(seconds * 10) % (2 * travel);
+  const int left = step < travel ? step : 2 * travel - step;
+  return fmt::format("{:.<{}}{:#<{}}{:.<{}}", "", left, "", block, "", travel - left);
 }
 
 }  // namespace
@@ -97,7 +97,7 @@ Progress ProgressDisplay::progress() {
 
 void ProgressDisplay::clear() {
   const std::scoped_lock lock(mutex_);
-  if (drawn_) say(clear_line);
+  if (drawn_) print_to_stderr(clear_line);
   drawn_ = false;
   stage_.clear();
 }
@@ -114,8 +114,8 @@ void ProgressDisplay::run(const std::stop_token& stop) {
 void ProgressDisplay::draw() {
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
   if (seconds < 1.0) return;
-  say(fmt::format("{}[{}] {:.0f} s  {}", clear_line, bar(fraction_, seconds), std::floor(seconds),
-                  stage_.substr(0, 32)));
+  print_to_stderr(fmt::format("{}[{}] {:.0f} s  {}", clear_line, bar(fraction_, seconds), std::floor(seconds),
+                              stage_.substr(0, 32)));
   drawn_ = true;
 }
 

@@ -18,7 +18,7 @@ namespace ahm::app {
 bool open_browser(const std::string& address);
 
 /// Writes to standard error. Ignores failures, which cannot be reported anywhere.
-void say(std::string_view text);
+void print_to_stderr(std::string_view text);
 
 /// Writes "ahm: warning: <text>" to standard error.
 void warn(std::string_view text);

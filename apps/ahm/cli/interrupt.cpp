@@ -15,14 +15,14 @@ namespace {
 // Messages, set before the handlers are installed.
 std::string interrupted, out_of_memory, unknown_failure;
 
-void tell(const std::string& message) {
+void write_message(const std::string& message) {
   [[maybe_unused]] const ssize_t ignored = write(STDERR_FILENO, message.data(), message.size());
 }
 
 // Makes only calls that are allowed in a signal handler.
 extern "C" void on_signal(int number) {
   io::remove_unfinished_files();
-  tell(interrupted);
+  write_message(interrupted);
   _exit(128 + number);
 }
 
@@ -30,11 +30,11 @@ extern "C" void on_signal(int number) {
   io::remove_unfinished_files();
   try {
     if (const std::exception_ptr thrown = std::current_exception()) std::rethrow_exception(thrown);
-    tell(unknown_failure);
+    write_message(unknown_failure);
   } catch (const std::bad_alloc&) {
-    tell(out_of_memory);
+    write_message(out_of_memory);
   } catch (...) {
-    tell(unknown_failure);
+    write_message(unknown_failure);
   }
   _exit(1);
 }

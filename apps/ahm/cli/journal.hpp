@@ -62,13 +62,14 @@ class Journal {
     if (!is_verbose() || times_.seconds().size() == reported_) return;
     display_.clear();
     const auto& [stage, seconds] = times_.seconds()[reported_++];
-    say(fmt::format("ahm: {:<8}{:8.3f} s   peak memory {}\n", stage, seconds, bytes_as_text(peak_rss_bytes())));
+    print_to_stderr(
+        fmt::format("ahm: {:<8}{:8.3f} s   peak memory {}\n", stage, seconds, bytes_as_text(peak_rss_bytes())));
   }
 
   /// Prints a line with --verbose.
-  void tell(const std::string& text) {
+  void add_detail(const std::string& text) {
     finish();
-    if (is_verbose()) say(fmt::format("ahm: {}\n", text));
+    if (is_verbose()) print_to_stderr(fmt::format("ahm: {}\n", text));
   }
 
   void add_warning(const std::string& text) {

@@ -29,7 +29,8 @@ constexpr const char* out_of_memory =
 
 /// Prints an error in pieces, because there may be no memory to join them.
 int report(std::string_view message, int status) {
-  for (const std::string_view part : {std::string_view("ahm: error: "), message, std::string_view("\n")}) say(part);
+  for (const std::string_view part : {std::string_view("ahm: error: "), message, std::string_view("\n")})
+    print_to_stderr(part);
   return status;
 }
 

@@ -57,15 +57,15 @@ std::vector<Vertex> choose_sources(const AtlasCommandOptions& options, const Inp
 }
 
 /// The atlas and the figures of its report.
-struct Made {
+struct AtlasResult {
   Atlas atlas;
   AtlasDistortion distortion;
   TextureAtlas packed;
   std::size_t faces = 0, uncharted = 0;
   std::vector<Vec3> sources;
 
-  Made(Atlas made, const SurfaceFaces& polygons, const TangentGraph& graph, const std::vector<Vec3>& positions,
-       const PackOptions& options)
+  AtlasResult(Atlas made, const SurfaceFaces& polygons, const TangentGraph& graph, const std::vector<Vec3>& positions,
+              const PackOptions& options)
       : atlas(std::move(made)),
         distortion(ahm::distortion(atlas, polygons.of_vertices(), positions)),
         packed(ahm::pack(atlas, polygons.of_vertices(), options)),
@@ -82,7 +82,7 @@ std::vector<Vec3> vertex_positions(const SurfaceFaces& faces, Index vertices) {
   return positions;
 }
 
-void comment(const AtlasCommandOptions& options, const Made& made, const TangentGraph& graph, Journal& journal) {
+void comment(const AtlasCommandOptions& options, const AtlasResult& made, const TangentGraph& graph, Journal& journal) {
   if (made.uncharted > 0) {
     const Index components = connected_components(graph).count;
     journal.add_warning(
@@ -109,7 +109,7 @@ void comment(const AtlasCommandOptions& options, const Made& made, const Tangent
         distorted, made.atlas.charts.size(), *options.max_distortion));
 }
 
-void write_files(const AtlasCommandOptions& options, const SurfaceFaces& faces, const Made& made) {
+void write_files(const AtlasCommandOptions& options, const SurfaceFaces& faces, const AtlasResult& made) {
   const Image texture = options.texture.empty() ? checkerboard(made.packed) : io::read_image(options.texture);
   const auto is_charted = [&](std::size_t f) { return made.atlas.chart_of_face[f] >= 0; };
   const FacesPart charted(faces, is_charted, made.packed.coordinates);
@@ -136,7 +136,7 @@ nlohmann::ordered_json as_json(const DistortionSummary& s) {
           {"flipped_area", s.flipped_area}};
 }
 
-void report(const AtlasCommandOptions& options, const Input& input, const Made& made, Journal& journal) {
+void report(const AtlasCommandOptions& options, const Input& input, const AtlasResult& made, Journal& journal) {
   nlohmann::ordered_json j = summary("ahm atlas", options.input.path, options.output, input);
   j["faces"] = made.faces;
   j["uncharted"] = made.uncharted;
@@ -168,7 +168,7 @@ void run(const AtlasCommandOptions& options) {
   check_texture_output(options.input.path, options.output, {".obj", ".glb"}, {"atlas"}, options.texture);
   if (!options.texture.empty()) io::read_image(options.texture);  // reports a bad file before the work
   Journal journal(options.output.verbosity);
-  const Input input = open_input(naming(options.input, options.sources), journal);
+  const Input input = open_input(with_named_points(options.input, options.sources), journal);
   const TangentGraph& graph = input.graph();
   SolveOptions solve = options.solve;
   if (input.surface().faces().size() > 0)
@@ -185,9 +185,10 @@ void run(const AtlasCommandOptions& options) {
   journal.start("charts");
   RefineOptions refine;
   if (options.max_distortion) refine.max_distortion = *options.max_distortion;
-  const Made made(options.max_distortion ? make_atlas(maps.maker(), sources, faces.of_vertices(), positions, refine)
-                                         : make_atlas(maps.maker(), sources, faces.of_vertices()),
-                  faces, graph, positions, options.pack);
+  const AtlasResult made(options.max_distortion
+                             ? make_atlas(maps.maker(), sources, faces.of_vertices(), positions, refine)
+                             : make_atlas(maps.maker(), sources, faces.of_vertices()),
+                         faces, graph, positions, options.pack);
   comment(options, made, graph, journal);
 
   journal.start("write");

@@ -162,7 +162,7 @@ void run(const CellsOptions& options) {
   Journal journal(options.output.verbosity);
   std::vector<SourceSpec> named = options.sources;
   if (options.start) named.push_back(*options.start);
-  const Input input = open_input(naming(options.input, named), journal);
+  const Input input = open_input(with_named_points(options.input, named), journal);
   const TangentGraph& graph = input.graph();
   std::vector<Vertex> sources = vertices_of(input, options.sources);
   comment_on_positions(input, options.sources, "--sources", journal);

@@ -100,7 +100,7 @@ void run(const CenterCommandOptions& options) {
   Journal journal(options.output.verbosity);
   std::vector<SourceSpec> named = options.points;
   if (options.start) named.push_back(*options.start);
-  const Input input = open_input(naming(options.input, named), journal);
+  const Input input = open_input(with_named_points(options.input, named), journal);
   const Maps maps(options.solve, input, journal, 6);
   const Center center = find_center(options, input, maps, journal);
   comment_on(center, input.graph(), journal);

@@ -45,25 +45,25 @@ HeatOptions heat_options(const SolveOptions& solve) {
 }
 
 /// The estimate for one strategy, as text and for programs.
-struct Told {
+struct EstimateText {
   std::string text;
   nlohmann::ordered_json json;
 };
 
-Told told(Estimate e) {
+EstimateText text_of(Estimate e) {
   return {fmt::format("about {:.2g} s, {}", e.seconds, bytes_as_text(static_cast<std::int64_t>(e.bytes))),
           {{"seconds", e.seconds}, {"peak_bytes", e.bytes}}};
 }
 
-void tell(const GraphSize& size, const std::string& backend, Strategy chosen, const std::string& json,
-          const std::function<Told(Strategy)>& of_strategy) {
+void print_estimates(const GraphSize& size, const std::string& backend, Strategy chosen, const std::string& json,
+                     const std::function<EstimateText(Strategy)>& of_strategy) {
   nlohmann::ordered_json j{{"program", "ahm logmap --estimate"},
                            {"n", size.vertices},
                            {"backend", backend},
                            {"strategy", to_string(chosen)}};
   std::string text = fmt::format("vertices: {}, backend {}\n", size.vertices, backend);
   for (Strategy strategy : {Strategy::global, Strategy::march}) {
-    const Told one = of_strategy(strategy);
+    const EstimateText one = of_strategy(strategy);
     j[std::string(to_string(strategy))] = one.json;
     text += fmt::format("{:<7} {}{}\n", to_string(strategy), one.text, strategy == chosen ? "  (chosen)" : "");
   }
@@ -79,8 +79,8 @@ void estimate_from_size(const LogmapOptions& options) {
   const Backend& backend = choose_backend(input, options.input);
   const GraphSize size{vertices_of(input, backend, options.input)};
   const HeatOptions heat = heat_options(options.solve);
-  tell(size, std::string(backend.name), choose_strategy(size, heat), options.output.json,
-       [&](Strategy strategy) { return told(estimate(size, strategy, backend, heat)); });
+  print_estimates(size, std::string(backend.name), choose_strategy(size, heat), options.output.json,
+                  [&](Strategy strategy) { return text_of(estimate(size, strategy, backend, heat)); });
 }
 
 /// Estimates from the graph of the map, which is built for that. Time and memory up to then are measured.
@@ -98,17 +98,18 @@ void estimate_from_graph(const LogmapOptions& options) {
     const Cost cost = estimate_cost(graph, source, strategy, heat, radius);
     return Estimate{strategy, so_far.bytes + cost.bytes, so_far.seconds + cost.first_map_seconds};
   };
-  tell(size, std::string(input.backend->name), choose_strategy(size, heat), options.output.json,
-       [&](Strategy strategy) {
-         constexpr double everywhere = std::numeric_limits<double>::infinity();
-         if (strategy == Strategy::global || !options.solve.radius) return told(within(strategy, everywhere));
-         Told one = told(within(strategy, *options.solve.radius));
-         if (graph.is_delaunay()) return one;
-         const Told most = told(within(strategy, everywhere));
-         one.text += "; at most " + most.text.substr(std::string_view("about ").size());
-         one.json["at_most"] = most.json;
-         return one;
-       });
+  print_estimates(size, std::string(input.backend->name), choose_strategy(size, heat), options.output.json,
+                  [&](Strategy strategy) {
+                    constexpr double everywhere = std::numeric_limits<double>::infinity();
+                    if (strategy == Strategy::global || !options.solve.radius)
+                      return text_of(within(strategy, everywhere));
+                    EstimateText one = text_of(within(strategy, *options.solve.radius));
+                    if (graph.is_delaunay()) return one;
+                    const EstimateText most = text_of(within(strategy, everywhere));
+                    one.text += "; at most " + most.text.substr(std::string_view("about ").size());
+                    one.json["at_most"] = most.json;
+                    return one;
+                  });
 }
 
 }  // namespace

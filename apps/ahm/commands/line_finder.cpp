@@ -50,11 +50,11 @@ std::vector<FoundLine> LineFinder::paths(std::span<const std::array<SurfacePoint
     for (std::size_t k = 0; k < found.size(); ++k) result[k] = over_faces(*geodesics_, std::move(found[k]));
     return result;
   }
-  std::mutex telling;
+  std::mutex progress_mutex;
   std::size_t done = 0;
   detail::parallel_chunks(static_cast<Offset>(pairs.size()), 1, threads, [&](Offset k, Offset) {
     result[k] = path(pairs[k][0], pairs[k][1], fast);
-    const std::lock_guard lock(telling);
+    const std::lock_guard lock(progress_mutex);
     progress.step("paths", static_cast<double>(++done) / static_cast<double>(pairs.size()));
   });
   return result;

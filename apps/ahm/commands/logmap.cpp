@@ -60,11 +60,11 @@ void report(const LogmapRun& run, const OutputOptions& output, Journal& journal)
 /// @throws IoError, InvalidArgument
 void check_log_map(const LogmapOptions& options, const std::vector<std::string>& inputs);
 
-/// Runs a part of the work. If it fails, prints the error where `tells` is set, and continues.
+/// Runs a part of the work. If it fails, prints the error where `reports_error` is set, and continues.
 /// @param what   input, for the message
 /// @param alone  this is all the work: exceptions are passed on
 /// @return whether it succeeded
-bool attempt(const std::string& what, bool alone, const std::function<void()>& work, bool tells = true);
+bool attempt(const std::string& what, bool alone, const std::function<void()>& work, bool reports_error = true);
 
 /// Reads one file and makes its maps. The graph is built and factored once for all maps, unless it depends on the source. With
 /// several maps the first ten failures are printed, and the other maps are made.
@@ -169,7 +169,7 @@ void report(const LogmapRun& run, const OutputOptions& output, Journal& journal)
 namespace {
 
 /// Number of failed maps per file that are reported one by one.
-constexpr std::size_t most_told = 10;
+constexpr std::size_t most_reported = 10;
 
 void write_results(const LogmapOptions& options, const SurfaceSource& source, const RowLogMap& rows,
                    const std::vector<double>& quality, const std::vector<Vec3>& away, Results& results,
@@ -240,7 +240,7 @@ void map_from_source(const LogmapOptions& options, const Input& input, std::opti
       to_rows(rows, front ? map_quality(input.graph(), map, *front, options.solve.threads)
                           : map_quality(input.graph(), map, options.solve.threads));
   front.reset();
-  if (options.input.around_source) settle_left_out(input, source, *options.solve.radius, rows);
+  if (options.input.around_source) set_left_out_statuses(input, source, *options.solve.radius, rows);
   comment_on_statuses(rows.status, options.input.path, journal);
   comment_on_quality(quality, "limit the map with --radius, or choose another source", journal);
 
@@ -276,7 +276,7 @@ void check_log_map(const LogmapOptions& options, const std::vector<std::string>&
   check_outputs(inputs, files, output.keep_existing);
 }
 
-bool attempt(const std::string& what, bool alone, const std::function<void()>& work, bool tells) {
+bool attempt(const std::string& what, bool alone, const std::function<void()>& work, bool reports_error) {
   if (alone) return work(), true;
   try {
     io::FileSet files;
@@ -285,7 +285,7 @@ bool attempt(const std::string& what, bool alone, const std::function<void()>& w
   } catch (const Cancelled&) {
     throw;
   } catch (const Error& e) {
-    if (tells) say(fmt::format("ahm: error: {}: {}\n", what, worded(e)));
+    if (reports_error) print_to_stderr(fmt::format("ahm: error: {}: {}\n", what, worded(e)));
     return false;
   }
 }
@@ -310,11 +310,11 @@ std::size_t run_log_maps(const std::vector<LogmapOptions>& maps, bool alone) {
       }
       map_from_source(map, *input, solvers, for_source ? 1 : maps.size(), !alone, *journal);
     };
-    failed += !attempt(map.input.path, alone, work, failed < most_told);
+    failed += !attempt(map.input.path, alone, work, failed < most_reported);
     journal.reset();
   }
-  if (failed > most_told)
-    say(fmt::format("ahm: error: {}: more failed maps: {}\n", first.input.path, failed - most_told));
+  if (failed > most_reported)
+    print_to_stderr(fmt::format("ahm: error: {}: more failed maps: {}\n", first.input.path, failed - most_reported));
   return failed;
 }
 
@@ -379,7 +379,7 @@ void name_outputs(LogmapOptions& map, const std::string& stem) {
       throw InvalidArgument(
           fmt::format("{} {}: this is one file for several maps; write a folder, or {{}} in place of the input's name",
                       option, name));
-    name = filled(name, stem, ending);
+    name = output_name(name, stem, ending);
   };
   const std::string ending = map.output.format.empty() ? ".csv" : map.output.format;
   fill(map.output.output, "--output", ending.c_str());
@@ -407,7 +407,7 @@ void check_different(const std::vector<std::vector<LogmapOptions>>& files) {
 }
 
 /// The options of all maps, by input, with their own file names.
-std::vector<std::vector<LogmapOptions>> planned(const LogmapCommand& command) {
+std::vector<std::vector<LogmapOptions>> plan_maps(const LogmapCommand& command) {
   const bool one = command.inputs.size() * command.sources.size() == 1;
   std::vector<std::vector<LogmapOptions>> files;
   for (const std::string& path : command.inputs) {
@@ -434,7 +434,7 @@ void run(const LogmapCommand& command) {
     if (!command.sources.empty()) map.source.spec = command.sources.front();
     return run_estimate(map, !command.sources.empty());
   }
-  const auto files = planned(command);
+  const auto files = plan_maps(command);
   const std::size_t count = command.inputs.size() * command.sources.size();
   std::size_t failed = 0;
   for (const auto& maps : files) {

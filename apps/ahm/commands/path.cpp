@@ -82,8 +82,8 @@ std::vector<SourceSpec> named_points(const PathCommandOptions& options) {
 }
 
 /// Adds the paths from stop to stop as one curve.
-void go_through(const PathCommandOptions& options, const std::vector<SurfacePoint>& stops,
-                const std::vector<SourceSpec>& specs, const LineFinder& finder, Polylines& path) {
+void add_path_through(const PathCommandOptions& options, const std::vector<SurfacePoint>& stops,
+                      const std::vector<SourceSpec>& specs, const LineFinder& finder, Polylines& path) {
   std::vector<double> lengths;
   FoundLine curve;
   for (std::size_t k = 1; k < stops.size(); ++k) {
@@ -130,7 +130,7 @@ Polylines find_path(const PathCommandOptions& options, const LineFinder& finder,
   for (const SourceSpec& spec : specs) path.json["stops"].push_back(to_string(spec));
   path.json["closed"] = options.closed;
   path.json["fast"] = options.fast;
-  go_through(options, stops, specs, finder, path);
+  add_path_through(options, stops, specs, finder, path);
   return path;
 }
 
@@ -167,7 +167,7 @@ Polylines find_pairs(const PathCommandOptions& options, const LineFinder& finder
 
 void run(const PathCommandOptions& options) {
   run_polyline(
-      "path", naming(options.input, named_points(options)), options.output, {},
+      "path", with_named_points(options.input, named_points(options)), options.output, {},
       [&](const LineFinder& finder, const Input& input, Journal& journal) {
         if (!finder.has_faces() && (options.fast || options.tighten))
           throw InvalidArgument(fmt::format("{}: requires faces; the input has none, or --backend ignores them",

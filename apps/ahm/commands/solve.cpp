@@ -12,7 +12,7 @@
 
 namespace ahm::app {
 
-std::vector<std::string> words(const InputOptions& o) {
+std::vector<std::string> option_words(const InputOptions& o) {
   const InputOptions usual;
   std::vector<std::string> out;
   const auto add = [&](const char* name, const auto& value) {
@@ -104,7 +104,7 @@ LogMap solve(const SolveOptions& options, const LogMapSolver& solver, const Sour
   journal.start("solve");
   if (solver.strategy() == Strategy::march) check_memory_of_march(options, solver.graph(), source, journal);
   LogMap map = solver.solve(source, map_options(options));
-  journal.tell(strategy_as_text(map));
+  journal.add_detail(strategy_as_text(map));
   return map;
 }
 

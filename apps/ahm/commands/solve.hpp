@@ -14,7 +14,7 @@
 namespace ahm::app {
 
 /// The input options that differ from the defaults, as command-line arguments, without the path.
-std::vector<std::string> words(const InputOptions& options);
+std::vector<std::string> option_words(const InputOptions& options);
 
 /// A solver with the options, which also set the variant and threads of all maps.
 /// @param maps  expected number of maps; 0: many

@@ -150,7 +150,7 @@ void report(const StrokeCommandOptions& options, const Input& input, const Surfa
 void run(const StrokeCommandOptions& options) {
   check_results(options.input.path, options.output);
   Journal journal(options.output.verbosity);
-  const Input input = open_input(naming(options.input, options.curve), journal);
+  const Input input = open_input(with_named_points(options.input, options.curve), journal);
   const SurfaceCurve curve = draw_curve(input, options);
   comment_on_curve(curve, input.mean_edge_length(), journal);
 

@@ -23,7 +23,7 @@ constexpr const char* trace_footer =
     "  ahm trace mesh.ply --source 17 --direction 1,0,0 --length 0.5 -o line.csv --view line.png";
 
 /// A line to trace.
-struct WantedLine {
+struct LineRequest {
   std::optional<SourceSpec> source;
   Vec3 direction{};
   double length = 0;  ///< 0: that of --length
@@ -32,11 +32,11 @@ struct WantedLine {
 struct TraceCommandOptions {
   InputOptions input;
   OutputOptions output;
-  WantedLine line;
-  std::vector<WantedLine> lines;  ///< lines of --lines, instead of `line`
+  LineRequest line;
+  std::vector<LineRequest> lines;  ///< lines of --lines, instead of `line`
 };
 
-WantedLine parse_line(const std::string& text) {
+LineRequest parse_line(const std::string& text) {
   std::istringstream stream(text);
   std::vector<std::string> words;
   for (std::string word; stream >> word;) words.push_back(word);
@@ -45,14 +45,14 @@ WantedLine parse_line(const std::string& text) {
   return {parse_source(words[0]), parse_direction(words[1]), words.size() == 3 ? parse_positive(words[2]) : 0.0};
 }
 
-std::vector<WantedLine> read_lines(const std::string& file) {
+std::vector<LineRequest> read_lines(const std::string& file) {
   require_file(file, "SPEC X,Y,Z in each row");
-  std::vector<WantedLine> lines;
+  std::vector<LineRequest> lines;
   for_each_line(file, file, "lines", [&](const std::string& line) { lines.push_back(parse_line(line)); });
   return lines;
 }
 
-FoundLine trace(const LineFinder& finder, const SurfacePoint& from, const WantedLine& line, const char* option) {
+FoundLine trace(const LineFinder& finder, const SurfacePoint& from, const LineRequest& line, const char* option) {
   try {
     return finder.trace(from, line.direction, line.length);
   } catch (const InvalidArgument& e) {
@@ -67,7 +67,7 @@ Polylines find_lines(const TraceCommandOptions& options, const LineFinder& finde
   result.numbered = true;
   double length = 0;
   std::size_t at_boundary = 0;
-  for (WantedLine wanted : options.lines) {
+  for (LineRequest wanted : options.lines) {
     if (wanted.length == 0) wanted.length = options.line.length;
     const SurfacePoint from = point_on_surface(input, *wanted.source, "--lines");
     const FoundLine line = trace(finder, from, wanted, "--lines");
@@ -105,8 +105,8 @@ void run(const TraceCommandOptions& options) {
   const bool is_one = options.lines.empty();
   std::vector<SourceSpec> sources;
   if (is_one) sources.push_back(*options.line.source);
-  for (const WantedLine& line : options.lines) sources.push_back(*line.source);
-  run_polyline("trace", naming(options.input, sources), options.output, options.line.source,
+  for (const LineRequest& line : options.lines) sources.push_back(*line.source);
+  run_polyline("trace", with_named_points(options.input, sources), options.output, options.line.source,
                [&](const LineFinder& finder, const Input& input, Journal& journal) {
                  comment_on_positions(input, sources, is_one ? "--source" : "--lines", journal);
                  return is_one ? find_line(options, finder, input) : find_lines(options, finder, input);
@@ -130,7 +130,7 @@ void offer(CLI::App& app, TraceCommandOptions& o) {
   app.callback([=, &o] {
     if (lines->count() == 0 && (source->count() == 0 || direction->count() == 0 || length->count() == 0))
       throw CLI::ValidationError("--source", "use --source, --direction and --length, or --lines");
-    for (const WantedLine& line : o.lines)
+    for (const LineRequest& line : o.lines)
       if (line.length == 0 && length->count() == 0)
         throw CLI::ValidationError("--lines", "some lines have no length; add it to the file, or use --length");
   });

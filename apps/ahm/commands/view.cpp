@@ -54,7 +54,7 @@ viewer::SessionOptions session_options(const ViewOptions& options, const Input& 
   viewer::SessionOptions session;
   session.title = std::filesystem::path(options.input.path).filename().string();
   session.input = detail::shell_word(options.input.path);
-  session.input_options = fmt::format("{}", fmt::join(words(options.input), " "));
+  session.input_options = fmt::format("{}", fmt::join(option_words(options.input), " "));
   session.settings = {options.solve.method.value_or(input.surface().suggested_method()),
                       options.solve.variant,
                       options.solve.t_coef,
@@ -113,11 +113,11 @@ void run(const ViewOptions& options) {
   journal.clear_display();
   const bool opened = !options.no_browser && open_browser(server.address());
   print(fmt::format("{}\n", server.address()));
-  say(opened ? "ahm: opened in the browser; Ctrl-C ends the program\n"
-             : "ahm: open this address in a browser; Ctrl-C ends the program\n");
+  print_to_stderr(opened ? "ahm: opened in the browser; Ctrl-C ends the program\n"
+                         : "ahm: open this address in a browser; Ctrl-C ends the program\n");
   if (const auto radius = first_radius(options, input.graph()); radius && !options.solve.radius)
-    say(fmt::format("ahm: maps have the radius {:g}, set by 'radius' on the page; clear that field to map everything\n",
-                    *radius));
+    print_to_stderr(fmt::format(
+        "ahm: maps have the radius {:g}, set by 'radius' on the page; clear that field to map everything\n", *radius));
   server.run();
 }
 

@@ -19,12 +19,12 @@
 namespace ahm::app {
 
 /// A surface, and the report and warnings of its construction, by the program and the library.
-struct Built {
+struct BuiltSurface {
   std::unique_ptr<const Surface> surface;
   Report report;
   std::vector<Warning> warnings;
 
-  explicit Built(std::unique_ptr<const Surface> built)
+  explicit BuiltSurface(std::unique_ptr<const Surface> built)
       : surface(std::move(built)), report(surface->report()), warnings(surface->warnings()) {}
 };
 
@@ -35,8 +35,8 @@ struct Backend {
   BuildCost cost;
   /// @param source  source of the single map, if there is one: filters of clouds keep its point
   /// @throws what the backend throws
-  Built (*build)(const io::Geometry& input, const InputOptions& options, const std::optional<SourceSpec>& source,
-                 const Progress& progress);
+  BuiltSurface (*build)(const io::Geometry& input, const InputOptions& options, const std::optional<SourceSpec>& source,
+                        const Progress& progress);
   /// Number of vertices that the graph will have in addition to those of the input; null: none.
   std::size_t (*more_vertices)(const io::Geometry& input, const InputOptions& options) = nullptr;
   bool uses_faces = true;  ///< false: only the points

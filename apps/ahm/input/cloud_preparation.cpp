@@ -62,7 +62,7 @@ void keep_surroundings(PreparedCloud& cloud, const io::Geometry& input, double r
 
 #ifdef AHM_WITH_PCL
 /// The vectors at the listed rows.
-std::vector<Vec3> taken(const std::vector<Vec3>& all, const std::vector<Index>& rows) {
+std::vector<Vec3> select_rows(const std::vector<Vec3>& all, const std::vector<Index>& rows) {
   std::vector<Vec3> result;
   for (Index row : rows) result.push_back(all[row]);
   return result;
@@ -96,9 +96,9 @@ std::vector<Index> representatives(const pcl_bridge::ReducedCloud& reduced, cons
 void apply_voxel_grid(PreparedCloud& cloud, const io::Geometry& input, const InputOptions& options,
                       const std::vector<SourceSpec>& named) try {
   const bool with_normals = !input.normals.empty() && options.normals != "estimate";
-  const pcl_bridge::ReducedCloud reduced =
-      pcl_functions().voxel_grid(taken(input.points, cloud.rows),
-                                 with_normals ? taken(input.normals, cloud.rows) : std::vector<Vec3>(), *options.voxel);
+  const pcl_bridge::ReducedCloud reduced = pcl_functions().voxel_grid(
+      select_rows(input.points, cloud.rows),
+      with_normals ? select_rows(input.normals, cloud.rows) : std::vector<Vec3>(), *options.voxel);
   std::vector<Index> kept = representatives(reduced, cloud.rows, named);
   cloud.voxel_replaced = static_cast<Index>(cloud.rows.size() - kept.size());
   for (Index& point : kept) point = cloud.rows[point];
@@ -108,7 +108,7 @@ void apply_voxel_grid(PreparedCloud& cloud, const io::Geometry& input, const Inp
 }
 
 void apply_outlier_removal(PreparedCloud& cloud, const io::Geometry& input, std::optional<Index> source) {
-  std::vector<Index> kept = pcl_functions().outlier_removal(taken(input.points, cloud.rows));
+  std::vector<Index> kept = pcl_functions().outlier_removal(select_rows(input.points, cloud.rows));
   cloud.outliers = static_cast<Index>(cloud.rows.size() - kept.size());
   for (Index& point : kept) point = cloud.rows[point];
   cloud.rows = std::move(kept);

@@ -47,7 +47,7 @@ std::vector<Vec3> Input::normals(unsigned threads) const {
   return result;
 }
 
-void settle_left_out(const Input& input, const SurfaceSource& source, double radius, RowLogMap& rows) {
+void set_left_out_statuses(const Input& input, const SurfaceSource& source, double radius, RowLogMap& rows) {
   const std::vector<Vec3>& points = input.geometry.points;
   if (!input.near || input.near->whole.part.empty()) {
     for (std::size_t r = 0; r < points.size(); ++r)

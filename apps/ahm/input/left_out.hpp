@@ -9,6 +9,6 @@ namespace ahm::app {
 
 /// Corrects the statuses of rows that --local left out, or that only left-out faces connect to the source. Meshes get the same
 /// statuses as without --local. Points of clouds get `beyond_radius` if their straight-line distance is larger than the radius.
-void settle_left_out(const Input& input, const SurfaceSource& source, double radius, RowLogMap& rows);
+void set_left_out_statuses(const Input& input, const SurfaceSource& source, double radius, RowLogMap& rows);
 
 }  // namespace ahm::app

@@ -54,13 +54,14 @@ void check_memory(const std::string& what, double bytes, Journal& journal) {
   constexpr double at_least = 0.75;
   const double memory = machine_memory();
   if (!(memory > 0 && bytes > memory)) return;
-  const std::string told =
+  const std::string message_text =
       fmt::format("{} requires about {} of memory, and {} are available", what,
                   bytes_as_text(static_cast<std::int64_t>(bytes)), bytes_as_text(static_cast<std::int64_t>(memory)));
   if (at_least * bytes > memory)
     throw ResourceExhausted(
-        told + "; thin the input, map only the surroundings of the source (ahm logmap --local), or use ahm-tiles");
-  journal.add_warning(told + "; the system may stop the program");
+        message_text +
+        "; thin the input, map only the surroundings of the source (ahm logmap --local), or use ahm-tiles");
+  journal.add_warning(message_text + "; the system may stop the program");
 }
 
 const Backend& choose_backend(const io::Geometry& input, const InputOptions& options) {
@@ -91,8 +92,8 @@ SourceSpec in_remaining_faces(const SourceSpec& spec, const RepairedMesh& mesh, 
   throw InvalidArgument(fmt::format("{} {}: {}", option, to_string(spec), e.what()));
 }
 
-Built build(const Backend& backend, const io::Geometry& geometry, const std::optional<RepairedMesh>& mesh,
-            const InputOptions& options, const std::optional<SourceSpec>& place, Journal& journal) {
+BuiltSurface build(const Backend& backend, const io::Geometry& geometry, const std::optional<RepairedMesh>& mesh,
+                   const InputOptions& options, const std::optional<SourceSpec>& place, Journal& journal) {
   return mesh ? build_repaired(backend, geometry, *mesh, options, place, journal.progress())
               : backend.build(geometry, options, place, journal.progress());
 }
@@ -103,7 +104,7 @@ SourceSpec in_near_faces(const SourceSpec& spec, const std::vector<Index>& near)
 }
 
 /// Reports vertices that are too far away as `beyond` instead of `unreferenced`.
-void count_beyond(std::int64_t beyond, Built& built) {
+void count_beyond(std::int64_t beyond, BuiltSurface& built) {
   std::int64_t unused = 0;
   for (Figure& figure : built.report)
     if (figure.id == "unreferenced") figure.value = unused = std::get<std::int64_t>(figure.value) - beyond;
@@ -126,7 +127,7 @@ Input open_surroundings(io::Geometry geometry, const Backend& backend, std::opti
   if (part) keep_faces(*part, near.faces);
   InputOptions of_part = options;
   of_part.turned = near.turned();
-  Built built = build(backend, geometry, part, of_part, in_near_faces(place, near.faces), journal);
+  BuiltSurface built = build(backend, geometry, part, of_part, in_near_faces(place, near.faces), journal);
   count_beyond(beyond, built);
   journal.add_warnings(built.warnings);
   geometry.face_begin = begin;
@@ -170,7 +171,7 @@ Input open_input(io::Geometry geometry, const InputOptions& options, Journal& jo
     check_memory("the graph", backend.cost.bytes * static_cast<double>(geometry.points.size()), journal);
   if (options.local && place && geometry.face_count() > 0 && backend.uses_faces)
     return open_surroundings(std::move(geometry), backend, std::move(mesh), given_faces, options, *place, journal);
-  Built built = build(backend, geometry, mesh, options, place, journal);
+  BuiltSurface built = build(backend, geometry, mesh, options, place, journal);
   journal.add_warnings(built.warnings);
   return {std::move(geometry), &backend, std::move(built), std::move(mesh), std::nullopt, given_faces, options.voxel};
 }
@@ -179,7 +180,7 @@ Input open_input(const InputOptions& options, Journal& journal, const std::optio
   return open_input(read_input(options, journal), options, journal, source);
 }
 
-InputOptions naming(InputOptions options, const std::vector<SourceSpec>& points) {
+InputOptions with_named_points(InputOptions options, const std::vector<SourceSpec>& points) {
   options.named.insert(options.named.end(), points.begin(), points.end());
   return options;
 }

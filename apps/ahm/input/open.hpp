@@ -35,7 +35,7 @@ void check_memory(const std::string& what, double bytes, Journal& journal);
 struct Input {
   io::Geometry geometry;
   const Backend* backend;
-  Built built;
+  BuiltSurface built;
   std::optional<RepairedMesh> repaired = {};  ///< with a repair; the faces of `geometry` are then those that remain
   /// For meshes with --local: the faces of `geometry` that the surface has. None: all faces.
   std::optional<Surroundings> near = {};
@@ -71,7 +71,7 @@ Input open_input(io::Geometry geometry, const InputOptions& options, Journal& jo
 Input open_input(const InputOptions& options, Journal& journal, const std::optional<SourceSpec>& source = {});
 
 /// The options, with these points added to those named in the command.
-InputOptions naming(InputOptions options, const std::vector<SourceSpec>& points);
+InputOptions with_named_points(InputOptions options, const std::vector<SourceSpec>& points);
 
 /// Opens the input; with --local only the surroundings of the source that a map of this radius requires.
 /// @throws InvalidArgument (--local without radius); as `open_input`

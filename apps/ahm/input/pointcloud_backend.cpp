@@ -64,14 +64,14 @@ std::vector<Warning> warnings_of(const PreparedCloud& prepared, std::size_t face
 
 bool suits(const io::Geometry& input) { return input.face_count() == 0; }
 
-Built build(const io::Geometry& input, const InputOptions& options, const std::optional<SourceSpec>& source,
-            const Progress& progress) {
+BuiltSurface build(const io::Geometry& input, const InputOptions& options, const std::optional<SourceSpec>& source,
+                   const Progress& progress) {
   check_cloud_input(input, options, source);
   const PreparedCloud prepared = prepare_cloud(input, options, source);
   CloudOptions cloud = cloud_options(options, progress);
   cloud.rows.emplace(prepared.rows.begin(), prepared.rows.end());
   const std::span<const Vec3> normals = options.normals == "estimate" ? std::span<const Vec3>() : input.normals;
-  Built result(std::make_unique<PointCloudSurface>(PointCloudSurface::build(input.points, normals, cloud)));
+  BuiltSurface result(std::make_unique<PointCloudSurface>(PointCloudSurface::build(input.points, normals, cloud)));
   result.report = report_of(prepared, result.report);
   const std::vector<Warning> before = warnings_of(prepared, input.face_count());
   result.warnings.insert(result.warnings.begin(), before.begin(), before.end());

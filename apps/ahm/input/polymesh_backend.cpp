@@ -23,10 +23,10 @@ polymesh::PolygonOptions polygon_options(const InputOptions& options, const Prog
 
 bool suits(const io::Geometry& input) { return input.face_count() > 0; }
 
-Built build(const io::Geometry& input, const InputOptions& options, const std::optional<SourceSpec>& source,
-            const Progress& progress) {
+BuiltSurface build(const io::Geometry& input, const InputOptions& options, const std::optional<SourceSpec>& source,
+                   const Progress& progress) {
   check_mesh_input("polymesh", input, options, source);
-  return Built(std::make_unique<PolygonMeshSurface>(PolygonMeshSurface::build(
+  return BuiltSurface(std::make_unique<PolygonMeshSurface>(PolygonMeshSurface::build(
       input.points, input.face_begin, input.face_vertices, polygon_options(options, progress))));
 }
 

@@ -50,12 +50,13 @@ SourceSpec in_remaining_faces(const SourceSpec& spec, const RepairedMesh& mesh) 
   return in_kept_faces(spec, mesh.given_face, "there is no such face, or the repair dropped it; choose another face");
 }
 
-Built build_repaired(const Backend& backend, const io::Geometry& input, RepairedMesh mesh, const InputOptions& options,
-                     const std::optional<SourceSpec>& source, const Progress& progress) {
+BuiltSurface build_repaired(const Backend& backend, const io::Geometry& input, RepairedMesh mesh,
+                            const InputOptions& options, const std::optional<SourceSpec>& source,
+                            const Progress& progress) {
   const bool is_finite_everywhere = std::ranges::all_of(input.points, [](const Vec3& p) { return is_finite(p); });
-  Built built = is_finite_everywhere ? backend.build(input, options, source, progress)
-                                     : backend.build(finite(input), options, source, progress);
-  return Built(std::make_unique<RepairedSurface>(std::move(built.surface), input.points, std::move(mesh)));
+  BuiltSurface built = is_finite_everywhere ? backend.build(input, options, source, progress)
+                                            : backend.build(finite(input), options, source, progress);
+  return BuiltSurface(std::make_unique<RepairedSurface>(std::move(built.surface), input.points, std::move(mesh)));
 }
 
 }  // namespace ahm::app

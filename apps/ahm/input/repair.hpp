@@ -23,7 +23,8 @@ SourceSpec in_remaining_faces(const SourceSpec& spec, const RepairedMesh& mesh);
 
 /// Builds the surface of a repaired input (`backend.build`); its rows are those of the input.
 /// @param source  its face is numbered among those that remain. @throws as `backend.build`
-Built build_repaired(const Backend& backend, const io::Geometry& input, RepairedMesh mesh, const InputOptions& options,
-                     const std::optional<SourceSpec>& source, const Progress& progress);
+BuiltSurface build_repaired(const Backend& backend, const io::Geometry& input, RepairedMesh mesh,
+                            const InputOptions& options, const std::optional<SourceSpec>& source,
+                            const Progress& progress);
 
 }  // namespace ahm::app

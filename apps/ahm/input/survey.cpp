@@ -125,7 +125,7 @@ double quantile(std::vector<double>& values, double q) {
 }
 
 /// Angle between the normals of the two triangles at each interior edge, degrees.
-std::vector<double> bends(const FlatTriangles& flat) {
+std::vector<double> bend_angles(const FlatTriangles& flat) {
   const auto corner = [&](Index v) { return (1 / flat.length_unit) * flat.positions[v]; };
   const auto normal = [&](exact::Half h) {
     const exact::HalfRecord& r = flat.surface.record(h);
@@ -154,7 +154,7 @@ MethodAdvice method_advice(const Surface& surface) {
   try {
     const FlatTriangles flat = surface.flat_triangles();
     advice.exact_possible = true;
-    std::vector<double> angles = bends(flat);
+    std::vector<double> angles = bend_angles(flat);
     if (!angles.empty()) {
       advice.median_bend = quantile(angles, 0.5);
       advice.sharp_bend = quantile(angles, 0.95);
@@ -264,7 +264,7 @@ Index central_row(std::span<const Vec3> positions, const std::vector<Index>& row
   return *std::ranges::min_element(front, {}, away);
 }
 
-SurfaceSurvey survey_surface(const Built& built) {
+SurfaceSurvey survey_surface(const BuiltSurface& built) {
   const std::vector<Index> component = connected_components(built.surface->graph()).of_vertex;
   SurfaceSurvey result;
   result.report = built.report;
@@ -341,8 +341,8 @@ void try_surface(io::Geometry input, const Attempt& attempt, const Progress& pro
   const Backend& backend = choose_backend(input, InputOptions{});
   std::string flags = attempt.flags;
   if (attempt.as_cloud && s.mesh) flags.insert(0, fmt::format(" --backend {}", backend.name));
-  const Built built = mesh ? build_repaired(backend, input, *mesh, attempt.options, {}, progress)
-                           : backend.build(input, attempt.options, {}, progress);
+  const BuiltSurface built = mesh ? build_repaired(backend, input, *mesh, attempt.options, {}, progress)
+                                  : backend.build(input, attempt.options, {}, progress);
   s.surface = survey_surface(built);
   // Many small components are usually stray points.
   if (attempt.as_cloud && s.surface->part_sizes.size() > 20 &&

@@ -40,10 +40,10 @@ bool suits(const io::Geometry& input) {
   return input.face_count() > 0;
 }
 
-Built build(const io::Geometry& input, const InputOptions& options, const std::optional<SourceSpec>& source,
-            const Progress& progress) {
+BuiltSurface build(const io::Geometry& input, const InputOptions& options, const std::optional<SourceSpec>& source,
+                   const Progress& progress) {
   check_mesh_input("trimesh", input, options, source);
-  return Built(std::make_unique<TriangleMeshSurface>(
+  return BuiltSurface(std::make_unique<TriangleMeshSurface>(
       TriangleMeshSurface::build(input.points, triangles(input), mesh_options(options, progress))));
 }
 

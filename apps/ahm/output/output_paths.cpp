@@ -44,7 +44,7 @@ std::string stem_of(const std::string& path) {
 
 bool is_pattern(const std::string& name) { return is_folder(name) || name.find(placeholder) != std::string::npos; }
 
-std::string filled(const std::string& name, const std::string& stem, const std::string& ending) {
+std::string output_name(const std::string& name, const std::string& stem, const std::string& ending) {
   if (is_folder(name)) {
     make_folder(name);
     return (fs::path(name) / (stem + "_map" + ending)).string();
@@ -69,10 +69,10 @@ bool same_file(const fs::path& a, const fs::path& b) {
 
 /// Whether a file is the input or belongs to it. The files of each input are looked up once.
 bool is_read(const fs::path& file, const std::string& input) {
-  static std::map<std::string, std::vector<fs::path>> beside;
+  static std::map<std::string, std::vector<fs::path>> companion_files;
   if (same_file(file, input == "-" ? "/dev/stdin" : input)) return true;
-  auto found = beside.find(input);
-  if (found == beside.end()) found = beside.emplace(input, io::files_beside(input)).first;
+  auto found = companion_files.find(input);
+  if (found == companion_files.end()) found = companion_files.emplace(input, io::files_beside(input)).first;
   return std::ranges::any_of(found->second, [&](const fs::path& other) { return same_file(file, other); });
 }
 

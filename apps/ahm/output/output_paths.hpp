@@ -18,7 +18,7 @@ bool is_pattern(const std::string& name);
 ///                if its parent exists
 /// @param ending  ".csv"
 /// @throws IoError (the folder cannot be created)
-std::string filled(const std::string& name, const std::string& stem, const std::string& ending);
+std::string output_name(const std::string& name, const std::string& stem, const std::string& ending);
 
 /// An output file and its option.
 struct OutputPath {

@@ -26,19 +26,19 @@ nlohmann::ordered_json summary(const std::string& program, const std::string& pa
 }
 
 void deliver(nlohmann::ordered_json summary, const std::string& text, const OutputOptions& output, Journal& journal,
-             const nlohmann::ordered_json& further) {
+             const nlohmann::ordered_json& extra) {
   journal.finish();
   journal.clear_display();
   summary["warnings"] = journal.warnings();
   for (const auto& [stage, seconds] : journal.times().seconds()) summary["seconds"][stage] = seconds;
   summary["seconds_total"] = journal.times().total();
   summary["peak_rss_bytes"] = peak_rss_bytes();
-  summary.update(further);
+  summary.update(extra);
   const auto write_summary = [&] { write_json(output.json, summary, output.json_lines); };
-  const bool is_told = output.json == "-";
-  if (!is_told) write_summary();
+  const bool is_json_on_stdout = output.json == "-";
+  if (!is_json_on_stdout) write_summary();
   io::FileSet::commit();  // the files exist before their names are printed, even if printing fails
-  if (is_told) write_summary();
+  if (is_json_on_stdout) write_summary();
   if (output.verbosity == Verbosity::quiet) return;
   std::vector<std::string> wrote;
   if (!output.output.empty() && !io::is_stream(output.output)) wrote.push_back(output.output);
@@ -46,7 +46,7 @@ void deliver(nlohmann::ordered_json summary, const std::string& text, const Outp
   const std::string all =
       fmt::format("{}{:.2f} s, peak memory {}\n{}", text, journal.times().total(), bytes_as_text(peak_rss_bytes()),
                   wrote.empty() ? "" : fmt::format("wrote {}\n", fmt::join(wrote, " and ")));
-  output.json == "-" || io::is_stream(output.output) ? say(all) : print(all);
+  output.json == "-" || io::is_stream(output.output) ? print_to_stderr(all) : print(all);
 }
 
 void deliver(nlohmann::ordered_json summary, const std::string& text, const OutputOptions& output, Journal& journal) {

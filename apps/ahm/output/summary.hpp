@@ -15,10 +15,10 @@ nlohmann::ordered_json summary(const std::string& program, const std::string& pa
                                const Input& input);
 
 /// Completes a summary with warnings, times and memory, and writes it: as JSON to --json, and as text to standard output, or to
-/// standard error if standard output has other contents. `further` has entries for the end of the JSON.
+/// standard error if standard output has other contents. `extra` has entries for the end of the JSON.
 /// @param text  text for users, before times and names of files
 void deliver(nlohmann::ordered_json summary, const std::string& text, const OutputOptions& output, Journal& journal,
-             const nlohmann::ordered_json& further);
+             const nlohmann::ordered_json& extra);
 void deliver(nlohmann::ordered_json summary, const std::string& text, const OutputOptions& output, Journal& journal);
 
 /// Writes JSON to standard output ("-"), to a file, or not at all (""). Replaces bytes that are not UTF-8.

@@ -43,7 +43,7 @@ constexpr Advice advices[] = {
 
 /// Puts an error that begins with "1 " into the singular: the first noun and the first verb after it. Libraries write errors in the
 /// plural.
-std::string of_one(std::string text) {
+std::string in_singular(std::string text) {
   if (!text.starts_with("1 ")) return text;
   using Forms = std::pair<std::string_view, std::string_view>;
   constexpr Forms nouns[] = {{" vertices ", " vertex "}, {" faces ", " face "}, {" edges ", " edge "},
@@ -73,8 +73,8 @@ std::string counted(std::size_t count, std::string_view noun) {
 
 std::string worded(const Error& error) {
   for (const auto& [fault, remedy] : advices)
-    if (error.fault() == fault) return of_one(fmt::format("{}; {}", error.problem(), remedy));
-  return of_one(error.what());
+    if (error.fault() == fault) return in_singular(fmt::format("{}; {}", error.problem(), remedy));
+  return in_singular(error.what());
 }
 
 nlohmann::ordered_json as_json(const Report& report) {

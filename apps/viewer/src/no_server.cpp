@@ -1,4 +1,4 @@
-// A build without cpp-httplib, or without three.js.
+// Replaces server.cpp in builds without cpp-httplib or three.js.
 #include "ahm/viewer/server.hpp"
 
 namespace ahm::viewer {
@@ -8,7 +8,7 @@ struct Server::Impl {};
 bool can_serve() noexcept { return false; }
 
 Server::Server(const Session&, int) {
-  throw Error("this build of libahm serves no pages; install cpp-httplib and three.js and configure again");
+  throw Error("this build of libahm cannot serve pages; install cpp-httplib and three.js and configure again");
 }
 Server::~Server() = default;
 int Server::port() const { return 0; }

@@ -25,7 +25,8 @@ std::string number(double x) {
 
 namespace {
 
-/// @param chosen  whether the command chooses its method unless it is given one
+/// The settings as options of the command line; omits default values.
+/// @param chosen  whether the command selects a method automatically without --method
 std::vector<std::string> words(const Settings& settings, bool chosen) {
   const Settings usual;
   std::vector<std::string> out;
@@ -60,7 +61,7 @@ std::string spec(const Surface& surface, const SurfacePoint& point) {
     return out;
   };
   if (const auto* face = std::get_if<FacePoint>(&point)) {
-    const auto* repaired = dynamic_cast<const RepairedSurface*>(&surface);  // commands count the faces of the file
+    const auto* repaired = dynamic_cast<const RepairedSurface*>(&surface);  // commands use the file's numbers
     out = "face:" + std::to_string(repaired ? repaired->mesh().given_face[face->face] : face->face) + ":";
     return list(face->barycentric);
   }
@@ -77,7 +78,7 @@ json point_as_json(const SurfacePoint& point) {
   return {{"face", face.face}, {"weights", face.barycentric}};
 }
 
-/// "1,234 points"
+/// A number with thousands separators, and a noun: "1,234 points".
 std::string counted(std::size_t n, const char* what) {
   std::string digits = std::to_string(n);
   for (auto k = static_cast<std::ptrdiff_t>(digits.size()) - 3; k > 0; k -= 3)
@@ -110,7 +111,7 @@ std::string exported(const std::string& format, const std::function<void(const s
   write(file);
   std::ifstream stream(file, std::ios::binary);
   std::string bytes((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
-  if (!stream || bytes.empty()) throw IoError("cannot read the export again");
+  if (!stream || bytes.empty()) throw IoError("cannot read the temporary file of the export");
   return bytes;
 }
 
@@ -141,7 +142,7 @@ Image image_of(const std::string& base64) {
   try {
     return io::read_image(file);
   } catch (const IoError&) {
-    throw InvalidArgument("the image is neither a PNG nor a JPEG file that ahm reads");
+    throw InvalidArgument("the image is not a PNG or JPEG file that ahm can read");
   }
 }
 
@@ -149,7 +150,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t most_points = 10'000;  // of a stroke
+constexpr std::size_t most_points = 10'000;  // maximum number of points of a stroke
 constexpr std::size_t longest_name = 64;
 
 [[noreturn]] void refuse(const std::string& name, const std::string& what) {
@@ -190,7 +191,7 @@ SurfacePoint standing_for(const Surface& surface, const SurfacePoint& point) {
   try {
     surface.vertex(*row);
   } catch (const InvalidArgument& e) {
-    if (e.fault() != "row_left_out") return point;  // refused where it is used
+    if (e.fault() != "row_left_out") return point;  // the caller rejects it when it uses the point
     const Vec3& position = surface.positions()[row->index];
     if (is_finite(position)) return surface.nearest_row(position);
   }
@@ -198,7 +199,7 @@ SurfacePoint standing_for(const Surface& surface, const SurfacePoint& point) {
 }
 
 Request::Request(std::string_view body) : json_(json::parse(body, nullptr, false)) {
-  if (json_.is_discarded()) throw InvalidArgument("request: the body is no JSON");
+  if (json_.is_discarded()) throw InvalidArgument("request: the body is not JSON");
   if (!json_.is_object()) throw InvalidArgument("request: the body must be a JSON object");
 }
 
@@ -216,7 +217,7 @@ bool Request::has(const char* name) const {
 std::string Request::client() const {
   const json& value = at("client");
   if (!value.is_string() || value.get_ref<const std::string&>().size() > longest_name)
-    refuse("client", "must be a text of at most 64 bytes");
+    refuse("client", "must be a string of at most 64 bytes");
   return value.get<std::string>();
 }
 
@@ -240,7 +241,7 @@ double Request::finite(const char* name) const { return viewer::finite(at(name),
 
 std::string Request::text(const char* name) const {
   const json& value = at(name);
-  if (!value.is_string()) refuse(name, "must be a text");
+  if (!value.is_string()) refuse(name, "must be a string");
   return value.get<std::string>();
 }
 
@@ -249,7 +250,7 @@ CoverageOptions Request::cover() const {
   cover.radius = positive("cover");
   cover.spacing = positive("spacing");
   if (cover.radius / cover.spacing > 500)
-    throw InvalidArgument("request: more than 500 lines from the source; give a wider \"spacing\"");
+    throw InvalidArgument("request: more than 500 lines from the source; choose a larger \"spacing\"");
   cover.pattern = word("pattern", {"raster", "spiral"}) == "raster" ? CoveragePattern::raster : CoveragePattern::spiral;
   return cover;
 }

@@ -1,4 +1,4 @@
-// Requests as command lines that give the same.
+// Parsing of requests, and command lines that reproduce their results.
 #pragma once
 
 #include <filesystem>
@@ -19,42 +19,42 @@ namespace ahm::viewer {
 /// The shortest decimals that read back to the same number.
 std::string number(double x);
 
-/// ahm NAME INPUT ARGUMENTS SETTINGS INPUT-OPTIONS
+/// The command line: ahm NAME INPUT ARGUMENTS SETTINGS INPUT-OPTIONS
 std::string command(const SessionOptions& session, const std::string& name, const std::vector<std::string>& arguments,
                     const Settings& settings);
 
-/// What is looked at, what can be asked for, and what is asked for unless a request says otherwise.
+/// The answer to "info": a description of the surface, the supported choices, and the initial settings.
 nlohmann::json session_info(const Surface& surface, const io::Geometry& geometry, const SessionOptions& options);
 
-/// The bytes that `write` puts into a file with this ending. @throws IoError, what `write` throws
+/// Calls `write` with a temporary file of this extension. @return its bytes @throws IoError; as `write`
 std::string exported(const std::string& format, const std::function<void(const std::filesystem::path&)>& write);
 
-/// A PNG or JPEG file in base64. @throws InvalidArgument: no such text, no such image
+/// Decodes a PNG or JPEG file in base64. @throws InvalidArgument (invalid base64, invalid image)
 Image image_of(const std::string& base64);
 
-/// The point, or for a row that was left out before the graph of a cloud was built the row nearest to it.
+/// The point; for a row that was removed before the graph of a cloud was built, the nearest row with a vertex.
 SurfacePoint standing_for(const Surface& surface, const SurfacePoint& point);
 
-/// The members of a request's object. All members throw InvalidArgument that names the one that does not fit.
+/// The JSON object of a request. All functions throw InvalidArgument with the name of the invalid member.
 class Request {
  public:
-  /// @throws InvalidArgument: no JSON, no object
+  /// @throws InvalidArgument (not JSON, not an object)
   explicit Request(std::string_view body);
 
   std::string client() const;
-  std::optional<Index> number() const;  ///< by which the client counts its requests
+  std::optional<Index> number() const;  ///< number of the request, if the client numbers them
   SurfacePoint point(const char* name) const;
   std::vector<SurfacePoint> points(const char* name) const;
-  /// @param usual  of what is not given
+  /// @param usual  default values
   Settings settings(const Settings& usual) const;
   double positive(const char* name) const;
   double finite(const char* name) const;
   std::string text(const char* name) const;
-  /// "cover", "spacing", "pattern"
+  /// The options in "cover", "spacing" and "pattern".
   CoverageOptions cover() const;
-  /// @param allowed  words
+  /// A string member. @param allowed  allowed values
   std::string word(const char* name, const std::vector<std::string>& allowed) const;
-  /// Whether there is such a member, not null.
+  /// Whether the member exists and is not null.
   bool has(const char* name) const;
 
  private:

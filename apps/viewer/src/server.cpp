@@ -18,20 +18,20 @@
 namespace ahm::viewer {
 namespace {
 
-constexpr std::size_t largest_body = 1 << 20, largest_export = 32 << 20;  // an image may come with it
-constexpr std::size_t most_workers = 1000;  // each for a connection that is open, if only for nothing to come
-constexpr int backlog = 1024;               // connections that wait for a worker
+constexpr std::size_t largest_body = 1 << 20, largest_export = 32 << 20;  // exports may include an image
+constexpr std::size_t most_workers = 1000;                                // one per open connection, even if idle
+constexpr int backlog = 1024;  // number of connections that can wait for a worker
 
 constexpr const char* gets[] = {"surface", "info"};
 constexpr const char* posts[] = {"map", "stroke", "path", "coverage", "export"};
 
-/// httplib's own, with more connections in waiting.
+/// The server of httplib, with a longer queue of waiting connections.
 class Listener : public httplib::Server {
  public:
   bool wait_longer() { return ::listen(svr_sock_, backlog) == 0; }
 };
 
-/// httplib's own has a number of threads from the start.
+/// Replaces httplib's task queue, which has a fixed number of threads.
 class Queue final : public httplib::TaskQueue {
  public:
   void enqueue(std::function<void()> task) override { workers_.enqueue(std::move(task)); }
@@ -46,13 +46,13 @@ void send(const Answer& answer, httplib::Response& response) {
   response.set_content(answer.body, answer.type);
 }
 
-/// Without a body where httplib would cut it into the ranges that were asked for.
+/// Sends an error. No body if the request has ranges, because httplib would split the body into them.
 void refuse(const httplib::Request& request, httplib::Response& response, int status, const std::string& text) {
   response.status = status;
   if (request.ranges.empty()) send({status, "application/json", R"({"error": ")" + text + "\"}"}, response);
 }
 
-/// Exactly one value, so that no two readers of a request see different ones.
+/// Whether a header has exactly one value, which is allowed. Several values could be interpreted differently by different readers.
 bool is_only(const httplib::Request& request, const char* header, const std::vector<std::string>& allowed) {
   return request.get_header_value_count(header) == 1 &&
          std::find(allowed.begin(), allowed.end(), request.get_header_value(header)) != allowed.end();
@@ -81,13 +81,13 @@ struct Server::Impl {
   Impl(const Session& given, int wanted) : session(given) {
     listener.new_task_queue = [] { return new Queue; };  // NOLINT: httplib deletes it
     listener.set_keep_alive_max_count(1);
-    listener.set_keep_alive_timeout(5);  // for a first byte
+    listener.set_keep_alive_timeout(5);  // seconds until the first byte
     listener.set_read_timeout(5);
     listener.set_write_timeout(30);
     listener.set_payload_max_length(largest_export);
     listener.set_tcp_nodelay(true);
     listener.set_socket_options([](socket_t socket) {
-      const int yes = 1;  // no SO_REUSEPORT: nobody else may listen here
+      const int yes = 1;  // no SO_REUSEPORT, so that no other process can listen on this port
       setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
     });
     bind(wanted);
@@ -102,8 +102,8 @@ struct Server::Impl {
       port = wanted;
     if (port <= 0 || !listener.wait_longer())
       throw Error(wanted == 0
-                      ? "no port of 127.0.0.1 can be listened to"
-                      : "port " + std::to_string(wanted) + " of 127.0.0.1 cannot be listened to; choose another");
+                      ? "cannot listen on any port of 127.0.0.1"
+                      : "cannot listen on port " + std::to_string(wanted) + " of 127.0.0.1; choose another port");
   }
 
   std::vector<std::string> hosts(const std::string& before) const {
@@ -111,7 +111,7 @@ struct Server::Impl {
     return {before + "127.0.0.1" + after, before + "localhost" + after};
   }
 
-  /// Before any body is read. 0: it may go on.
+  /// Checks a request before its body is read. @return HTTP status of the error; 0 if the request is valid
   int fault(const httplib::Request& request) const {
     if (!is_only(request, "Host", hosts(""))) return 403;
     if (request.has_header("Origin") && !is_only(request, "Origin", hosts("http://"))) return 403;
@@ -141,7 +141,7 @@ struct Server::Impl {
       const int status = fault(request);
       if (status == 0) return httplib::Server::HandlerResponse::Unhandled;
       refuse(request, response, status,
-             status == 413 ? "a JSON body of at most 1 MiB is expected, of 32 MiB to export" : "refused");
+             status == 413 ? "the body must be JSON of at most 1 MiB, or 32 MiB for exports" : "refused");
       return httplib::Server::HandlerResponse::Handled;
     });
     listener.set_error_handler([](const httplib::Request& request, httplib::Response& response) {
@@ -190,7 +190,7 @@ void Server::run() {
   impl_->is_finished = true;
 }
 
-// httplib forgets a stop that comes before it listens.
+// httplib ignores a stop before it listens, so repeat it until `run` has finished.
 void Server::stop() {
   {
     const std::lock_guard lock(impl_->mutex);

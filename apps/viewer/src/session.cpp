@@ -33,9 +33,9 @@ class Channels {
  public:
   enum class Kind { map, path, coverage };
 
-  /// Stops what this client asked for before, of this kind.
-  /// @param number  of the request, where the client counts them: requests may overtake each other on their way, and one that
-  ///                comes after a newer one is stopped itself
+  /// Cancels the previous request of this client and kind.
+  /// @param number  number of the request, if the client numbers them. If a request with a greater number has arrived before, this
+  ///                request is cancelled instead
   std::stop_token begin(const std::string& client, Kind kind, std::optional<Index> number) {
     const std::lock_guard lock(mutex_);
     const std::pair key(client, kind);
@@ -51,7 +51,7 @@ class Channels {
     return entry.stop.get_token();
   }
 
-  /// For what only `stop_all` ends.
+  /// A token for requests that only `stop_all` cancels.
   std::stop_token until_the_end() const { return end_.get_token(); }
 
   void stop_all() {
@@ -64,8 +64,8 @@ class Channels {
   static constexpr std::size_t most = 192;
   struct Entry {
     std::stop_source stop;
-    std::uint64_t begun = 0;      ///< in the order of all
-    std::optional<Index> number;  ///< the client's own
+    std::uint64_t begun = 0;      ///< sequence number among all requests
+    std::optional<Index> number;  ///< number from the client
   };
 
   void forget_oldest() {
@@ -81,16 +81,16 @@ class Channels {
   std::uint64_t count_ = 0;
 };
 
-/// Not safe to use from several threads.
+/// The solvers of the session, created on first use. Not thread-safe.
 class Makers {
  public:
   Makers(const Surface& surface, unsigned threads) : surface_(surface), threads_(threads) {}
 
-  /// Whether factors of the whole take long.
+  /// Whether the factorization of the whole graph takes long.
   bool is_large() const { return surface_.graph().size() > 200'000; }
 
-  /// Of the two that were used last, or a new one. Maps of large surfaces that end at a radius are marched: without
-  /// factors, in time proportional to what they reach.
+  /// The heat solver for the settings: one of the last two, or a new one. On large surfaces, maps with a radius use the march, which
+  /// requires no factorization of the whole graph; its time is proportional to the reached part.
   const LogMapSolver& solver(const Settings& settings, const std::stop_token& stop) {
     const bool marched = settings.radius && is_large();
     const auto fits = [&](const Kept& kept) { return kept.t_coef == settings.t_coef && kept.marched == marched; };
@@ -117,7 +117,7 @@ class Makers {
   /// @throws InvalidArgument: no faces
   const ExactGeodesics& geodesics() {
     if (surface_.faces().size() == 0)
-      throw InvalidArgument("paths and exact maps run over faces, which this input does not have");
+      throw InvalidArgument("paths and exact maps require faces, but the input has none");
     if (refusal_) std::rethrow_exception(refusal_);
     try {
       if (!geodesics_) geodesics_.emplace(surface_);
@@ -131,7 +131,7 @@ class Makers {
     return *geodesics_;
   }
 
-  /// The same; null where there are no flat faces.
+  /// `geodesics`, or null if the surface has no flat faces.
   const ExactGeodesics* flat_faces() try { return &geodesics(); } catch (const Error&) {
     return nullptr;
   }
@@ -147,16 +147,16 @@ class Makers {
   std::list<Kept> kept_;
   std::optional<PolarMapSolver> polar_;
   std::optional<ExactGeodesics> geodesics_;
-  std::exception_ptr refusal_;  ///< why there are none
+  std::exception_ptr refusal_;  ///< error of the construction of `geodesics_`
 };
 
-/// Without what decals and tool paths have no option for, or one of another meaning.
+/// The settings for decals and tool paths: without the radius, which they do not have or define differently.
 inline Settings of_patch(Settings settings) {
   settings.radius.reset();
   return settings;
 }
 
-/// Without what curves have no option for.
+/// The settings for curves: without polar maps and the u axis, which curves do not support.
 inline Settings of_curve(Settings settings) {
   if (settings.method == Method::polar) settings.method = Method::heat;
   settings.u_axis.reset();
@@ -194,10 +194,10 @@ Answer refusal(int status, const std::string& text) {
 
 Answer answer_of(const json& body) { return {200, "application/json", body.dump()}; }
 
-/// More requests than can be kept waiting.
+/// Thrown if too many requests are waiting.
 struct Busy {};
 
-/// @param drawn  of a cloud the points that are drawn, and so can be picked
+/// @param drawn  points of a cloud that are drawn and can be picked; empty for meshes
 render::Scene scene_of(const Surface& surface, const io::Geometry& geometry, const std::vector<Vec3>& drawn,
                        const std::vector<Vec3>& normals) {
   render::Scene scene;
@@ -221,12 +221,12 @@ struct Session::Impl {
   const Surface& surface;
   const io::Geometry& geometry;
   SessionOptions options;
-  std::vector<Vec3> drawn;  ///< of a cloud: without the rows that have no vertex, from which there is no map
+  std::vector<Vec3> drawn;  ///< for clouds: positions of rows with a vertex, which can be sources
   std::vector<Vec3> normals;
   render::Scene scene;
   render::PageSurface page;
   Channels channels;
-  std::mutex work;  ///< guards the makers; one map at a time
+  std::mutex work;  ///< guards `makers`; one map at a time
   std::atomic<int> waiting{0};
   Makers makers;
   std::jthread warm_up;
@@ -272,7 +272,7 @@ struct Session::Impl {
     return out;
   }
 
-  /// What the first click will need. What fails here fails there again, where somebody hears of it.
+  /// Creates the solver for the first click. Ignores errors, because the first request repeats and reports them.
   void prepare(const std::stop_token& stop) {
     const std::lock_guard lock(work);
     try {
@@ -291,7 +291,7 @@ struct Session::Impl {
     }
   }
 
-  /// Does `make` when it is its turn.
+  /// Calls `make` when earlier requests have finished.
   template <class Make>
   auto in_turn(const std::stop_token& stop, const Make& make) {
     struct Place {
@@ -305,7 +305,7 @@ struct Session::Impl {
     return make();
   }
 
-  /// @param placed  the source on the surface, with the u axis of the settings
+  /// Computes a map. @param placed  the source with the u axis of the settings
   LogMap map(const SurfacePoint& source, const SurfaceSource& placed, const Settings& settings,
              const std::stop_token& stop, bool frames = false) {
     const double radius = radius_of(settings);
@@ -325,7 +325,7 @@ struct Session::Impl {
     return to_rows(rows, map_quality(surface.graph(), map, options.threads));
   }
 
-  /// A map by row, and how it is told.
+  /// The bundle of a map, by row. @param more  additional members of its JSON text
   std::string bundle(const LogMap& map, const RowLogMap& rows, const Vec3& source, const std::optional<Frame>& frame,
                      render::Scene shown, render::Pattern pattern, const json& more) const {
     const std::vector<double> quality = quality_of(map, rows);
@@ -353,7 +353,7 @@ struct Session::Impl {
             bundle(made, surface.to_rows(made), placed.position, placed.frame, scene, render::Pattern::polar, more)};
   }
 
-  /// The page knows the image and its size, and puts them in.
+  /// The command line of a decal, with placeholders that the page replaces by the image, its size and its angle.
   std::string decal_command(const std::string& where, const Settings& settings) const {
     return command(options, "decal",
                    {"--source", where, "--image", "@IMAGE@", "--size", "@SIZE@", "--angle=@ANGLE@", "-o", "decal.glb"},
@@ -365,7 +365,7 @@ struct Session::Impl {
     return draw_curve(surface, std::vector<CurvePoint>(points.begin(), points.end()));
   }
 
-  /// As far as its distances go, which are not the map's own.
+  /// Computes the map of a curve, up to the radius that its distances require.
   LogMap stroke(const SurfaceCurve& curve, const Settings& settings, const std::stop_token& stop) {
     const double radius = map_radius_of_curve(curve, radius_of(settings));
     if (settings.method == Method::exact)
@@ -405,7 +405,7 @@ struct Session::Impl {
   };
 
   SurfacePath path(const Ends& ends, const std::stop_token& stop) {
-    for (const SurfacePoint& end : {ends.from, ends.to}) surface.source(end);  // checks
+    for (const SurfacePoint& end : {ends.from, ends.to}) surface.source(end);  // checks the point
     SurfacePath path = in_turn(stop, [&] { return path_between({ends.from, ends.to}, stop); });
     if (path.status != Status::ok)
       throw InvalidArgument("there is no path: the surface does not connect the two points");
@@ -424,11 +424,11 @@ struct Session::Impl {
                   {"--from", spec(surface, ends.from), "--to", spec(surface, ends.to), "-o", "path.obj"}, {})}});
   }
 
-  /// @param settings  `of_patch`
+  /// @param settings  result of `of_patch`
   CoveragePath tool_path(const SurfacePoint& source, const CoverageOptions& cover, const Settings& settings,
                          const std::stop_token& stop) {
     const SurfaceSource placed = surface.source(source, settings.u_axis);
-    Settings reach = settings;  // the tool path needs no map of the rest, whose factors would take long
+    Settings reach = settings;  // the whole map is not required, and its factorization takes long
     if (makers.is_large()) reach.radius = 1.5 * cover.radius;
     const ExactGeodesics* flat = nullptr;
     const LogMap made = in_turn(stop, [&] {
@@ -437,7 +437,7 @@ struct Session::Impl {
     });
     const InverseMap inverse = inverse_map(surface, made, {.threads = options.threads});
     CoveragePath path = flat ? coverage_path(*flat, inverse, cover) : coverage_path(inverse, cover);
-    if (path.points.empty()) throw InvalidArgument("no line of the pattern meets a trusted part of the surface");
+    if (path.points.empty()) throw InvalidArgument("no line of the pattern reaches a reliable part of the map");
     return path;
   }
 
@@ -502,7 +502,7 @@ struct Session::Impl {
   Answer answer_export(const Request& request) {
     std::vector<std::string> kinds;
     for (const auto& [kind, formats] : options.formats) kinds.push_back(kind);
-    if (kinds.empty()) throw InvalidArgument("request: this session exports nothing");
+    if (kinds.empty()) throw InvalidArgument("request: this session has no export formats");
     const std::string what = request.word("what", kinds);
     const std::string format = request.word("format", options.formats.at(what));
     const std::stop_token stop = channels.until_the_end();
@@ -527,7 +527,7 @@ struct Session::Impl {
     if (name == "path") return answer_path(request);
     if (name == "coverage") return answer_coverage(request);
     if (name == "export") return answer_export(request);
-    return refusal(404, "there is nothing of this name");
+    return refusal(404, "there is no request of this name");
   }
 };
 

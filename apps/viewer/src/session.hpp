@@ -1,4 +1,4 @@
-// A thread for every connection that is open, so that those on which nothing comes keep nobody waiting.
+// A thread for every open connection, so that idle connections do not block others.
 #pragma once
 
 #include <condition_variable>
@@ -12,7 +12,7 @@
 
 namespace ahm::viewer {
 
-/// Starts threads as connections come, up to a number; they are kept for the next ones. Beyond it connections wait.
+/// A pool of threads that grows with the number of connections, up to a limit. Additional connections wait.
 class Workers {
  public:
   explicit Workers(std::size_t most) : most_(most) {}
@@ -25,7 +25,7 @@ class Workers {
     wake_.notify_one();
   }
 
-  /// When all is done that was begun or waits.
+  /// Finishes all tasks, including those that wait, and ends the threads.
   void end() {
     {
       const std::lock_guard lock(mutex_);
@@ -36,7 +36,7 @@ class Workers {
   }
 
  private:
-  /// Where the system has no more threads, those that there are do it.
+  /// Starts a thread. If the system has no more threads, the existing ones do the work.
   void start() try {
     threads_.emplace_back([this] { work(); });
   } catch (const std::system_error&) {

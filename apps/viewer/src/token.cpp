@@ -10,7 +10,7 @@ namespace ahm::viewer {
 
 std::string random_token() {
   std::array<unsigned char, 16> bytes;
-  if (getentropy(bytes.data(), bytes.size()) != 0) throw Error("the system gives no random numbers");
+  if (getentropy(bytes.data(), bytes.size()) != 0) throw Error("the system returns no random numbers");
   std::string out;
   for (const unsigned char b : bytes) {
     out += "0123456789abcdef"[b >> 4U];

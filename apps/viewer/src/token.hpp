@@ -1,4 +1,4 @@
-// Secrets of an address.
+// The secret token in the server's address.
 #pragma once
 
 #include <string>
@@ -6,10 +6,10 @@
 
 namespace ahm::viewer {
 
-/// 32 hexadecimal digits from the system's random numbers. @throws Error where it has none
+/// 32 random hexadecimal digits from the system. @throws Error if the system returns no random numbers
 std::string random_token();
 
-/// In a time that does not depend on where they differ.
+/// Compares two strings, in a time that does not depend on the position of the first difference.
 bool same_secret(std::string_view a, std::string_view b) noexcept;
 
 }  // namespace ahm::viewer

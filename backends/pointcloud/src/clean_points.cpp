@@ -59,9 +59,9 @@ int highest_difference(double a, double b) {
 
 /// Leading digits of positions on the Morton curve, as integers. If they differ for two points, the point with the lower
 /// integer is `before_on_curve`.
-class CurvePlaces {
+class MortonCodes {
  public:
-  explicit CurvePlaces(std::span<const Vec3> points) {
+  explicit MortonCodes(std::span<const Vec3> points) {
     double most = 0;
     for (const Vec3& p : points) most = std::max(most, largest(p));
     most = std::min(most, std::numeric_limits<double>::max());  // a far outlier may be infinite
@@ -160,7 +160,7 @@ CleanPoints clean_points(std::span<const Vec3> input, const std::function<Index(
     std::uint64_t begin;
     Index position;
   };
-  const CurvePlaces begin_of(placed);
+  const MortonCodes begin_of(placed);
   std::vector<Place> order(placed.size());
   detail::for_each_index(order.size(), options.threads, [&](std::size_t i) {
     order[i] = {begin_of(placed[i]), static_cast<Index>(i)};

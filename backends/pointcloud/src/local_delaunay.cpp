@@ -21,29 +21,29 @@ namespace {
 constexpr double sheet_cosine = -0.5;
 
 /// A neighbor almost straight above the point has no direction in its tangent plane.
-constexpr double least_projection = 1e-6;
+constexpr double min_projection = 1e-6;
 
 /// Image of a neighbor under inversion about a point.
-struct Inverted {
+struct ImagePoint {
   double x, y;
   Index vertex;  ///< -1: the center of inversion itself
 };
 
-double turn(const Inverted& a, const Inverted& b, const Inverted& c) {
+double turn(const ImagePoint& a, const ImagePoint& b, const ImagePoint& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
 /// Convex hull, counter-clockwise, corners only (Andrew's monotone chain).
-void convex_hull(std::vector<Inverted>& points, std::vector<Inverted>& hull) {
-  std::sort(points.begin(), points.end(), [](const Inverted& a, const Inverted& b) {
+void convex_hull(std::vector<ImagePoint>& points, std::vector<ImagePoint>& hull) {
+  std::sort(points.begin(), points.end(), [](const ImagePoint& a, const ImagePoint& b) {
     return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.vertex < b.vertex;
   });
   hull.clear();
-  auto extend = [&](const Inverted& p, std::size_t floor) {
+  auto extend = [&](const ImagePoint& p, std::size_t floor) {
     while (hull.size() >= floor + 2 && turn(hull[hull.size() - 2], hull.back(), p) <= 0) hull.pop_back();
     hull.push_back(p);
   };
-  for (const Inverted& p : points) extend(p, 0);
+  for (const ImagePoint& p : points) extend(p, 0);
   const std::size_t upper = hull.size() - 1;
   for (std::size_t k = points.size() - 1; k-- > 0;) extend(points[k], upper);
   hull.pop_back();
@@ -53,12 +53,12 @@ void convex_hull(std::vector<Inverted>& points, std::vector<Inverted>& hull) {
 /// hull. The nearest neighbors come first and have the farthest images, so most images are removed where neighbors lie on all
 /// sides.
 /// @return whether such a polygon exists; the origin is then no corner of the hull, either
-bool drop_inner(std::vector<Inverted>& points) {
-  constexpr std::size_t looked_at = 12, directions = 8;
+bool drop_inner(std::vector<ImagePoint>& points) {
+  constexpr std::size_t sample_count = 12, directions = 8;
   // Farthest image in each direction, counter-clockwise: corners of a convex polygon, some of them equal.
   std::array<double, directions> farthest{};
-  std::array<const Inverted*, directions> corners{};
-  for (std::size_t k = 0; k < std::min(points.size(), looked_at); ++k) {
+  std::array<const ImagePoint*, directions> corners{};
+  for (std::size_t k = 0; k < std::min(points.size(), sample_count); ++k) {
     const double x = points[k].x, y = points[k].y;
     const std::array<double, directions> along{x, x + y, y, y - x, -x, -x - y, -y, x - y};
     for (std::size_t c = 0; c < directions; ++c)
@@ -66,7 +66,7 @@ bool drop_inner(std::vector<Inverted>& points) {
   }
   double squared_radius = std::numeric_limits<double>::infinity();
   for (std::size_t c = 0; c < directions; ++c) {
-    const Inverted *a = corners[c], *b = corners[(c + 1) % directions];
+    const ImagePoint *a = corners[c], *b = corners[(c + 1) % directions];
     if (!a || !b) return false;
     if (a == b) continue;
     const double area = a->x * b->y - a->y * b->x, x = b->x - a->x, y = b->y - a->y;
@@ -76,7 +76,7 @@ bool drop_inner(std::vector<Inverted>& points) {
   if (!std::isfinite(squared_radius)) return false;
   // Leaves images within rounding of the polygon to the hull.
   squared_radius *= 1 - 1e-6;
-  std::erase_if(points, [&](const Inverted& p) { return p.x * p.x + p.y * p.y < squared_radius; });
+  std::erase_if(points, [&](const ImagePoint& p) { return p.x * p.x + p.y * p.y < squared_radius; });
   return true;
 }
 
@@ -109,8 +109,7 @@ class StarTriangulator {
       const double length = norm(offset);
       if (!accept(i, j, length)) continue;
       const double x = dot(axes.x, offset), y = dot(axes.y, offset), squared = x * x + y * y;
-      if (squared > least_projection * least_projection * length * length)
-        images_.push_back({x / squared, y / squared, j});
+      if (squared > min_projection * min_projection * length * length) images_.push_back({x / squared, y / squared, j});
     }
     if (images_.size() < 2) return false;
     if (!drop_inner(images_)) images_.push_back({0, 0, -1});
@@ -142,7 +141,7 @@ class StarTriangulator {
   const PerPart& oriented_;
   const PerPart& noise_;
   double max_ratio_;
-  std::vector<Inverted> images_, hull_;
+  std::vector<ImagePoint> images_, hull_;
 };
 
 /// Counts how often each value occurs in a sorted range. Stores the counts in the order of the values, from `first` on.
@@ -167,7 +166,7 @@ std::vector<Triangle> unique_triangles(const std::vector<std::vector<Triangle>>&
     });
   };
   for_each_triangle([&](const Triangle& t) { ++begin[t[0] + 1]; });
-  begin = detail::starts_of(std::move(begin));
+  begin = detail::begin_of_groups(std::move(begin));
   detail::UnsetVector<std::array<Index, 2>> rest(static_cast<std::size_t>(begin[n]));
   std::vector<std::uint8_t> times(votes ? rest.size() : 0);
   std::vector<Offset> fill(begin.begin(), begin.end() - 1);

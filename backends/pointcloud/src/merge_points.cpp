@@ -11,9 +11,9 @@ namespace {
 
 /// Points nearer to each other than this fraction of the spacing are always merged.
 constexpr double equal_share = 1e-3;
-/// Points nearer than this fraction of the spacing are merged only if more than `most_by_chance` of all points have such a
+/// Points nearer than this fraction of the spacing are merged only if more than `max_chance_share` of all points have such a
 /// neighbor. Of randomly sampled points 0.4 % have one.
-constexpr double near_share = 0.05, most_by_chance = 0.01;
+constexpr double near_share = 0.05, max_chance_share = 0.01;
 
 struct Representatives {
   std::vector<Index> of_point;  ///< representative of each point: the point itself, or an earlier one near it
@@ -88,7 +88,7 @@ std::vector<Index> renumber(const std::vector<Index>& representatives, const std
 Index merge_near_points(CleanPoints& cloud, std::unique_ptr<NeighborSearch>& search, const CloudOptions& options,
                         Neighborhoods& neighborhoods) {
   Representatives found = find_representatives(cloud, neighborhoods, near_share);
-  if (found.merged <= most_by_chance * static_cast<double>(cloud.points.size()) && found.merged > 0)
+  if (found.merged <= max_chance_share * static_cast<double>(cloud.points.size()) && found.merged > 0)
     found = find_representatives(cloud, neighborhoods, equal_share);
   if (found.merged == 0) return 0;
   const std::vector<Index> number = keep_representatives(found.of_point, cloud);

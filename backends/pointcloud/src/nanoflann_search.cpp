@@ -20,11 +20,11 @@ struct Points {
 };
 
 /// The k nearest points, sorted by distance and then by index, so that the result does not depend on the tree.
-class NearestFew {
+class NearestPoints {
  public:
   using DistanceType = double;
 
-  NearestFew(std::span<Index> indices, std::span<double> distances) : indices_(indices), distances_(distances) {}
+  NearestPoints(std::span<Index> indices, std::span<double> distances) : indices_(indices), distances_(distances) {}
   std::size_t size() const { return count_; }
   bool full() const { return count_ == indices_.size(); }
   /// Search radius: slightly above the last distance, to find points at equal distances despite rounding of the tree's bounds.
@@ -63,7 +63,7 @@ class NanoflannSearch final : public NeighborSearch {
       : points_{points}, tree_(3, points_, nanoflann::KDTreeSingleIndexAdaptorParams(16)) {}
 
   Index nearest(const Vec3& query, std::span<Index> indices, std::span<double> squared_distances) const override {
-    NearestFew result(indices, squared_distances);
+    NearestPoints result(indices, squared_distances);
     tree_.findNeighbors(result, query.data(), nanoflann::SearchParams());
     return static_cast<Index>(result.size());
   }

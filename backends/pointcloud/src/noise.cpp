@@ -31,7 +31,7 @@ constexpr double deviation_of_median = 1 / 0.6744897501960817, deviation_of_larg
 constexpr double median_of_mean_square = 0.745;
 
 /// Offsets up to this fraction of the neighborhood radius are rounding errors.
-constexpr double least_offset = 1e-6;
+constexpr double min_offset = 1e-6;
 /// Criteria for layers. Nearly all points have neighbors in another layer. Few offsets lie between these fractions of the largest
 /// offset at their point; with normal noise every second one does.
 constexpr double layered_points = 0.9, between_from = 0.25, between_to = 0.75, between_layers = 0.25;
@@ -88,7 +88,7 @@ void NeighborOffsets::add(std::span<const double> of_point, double radius) {
     ++count;
   }
   counts.points += count > 0;
-  if (!(most > least_offset * radius)) return;
+  if (!(most > min_offset * radius)) return;
   largest.push_back(most);
   ++counts.apart;
   counts.beside += count - 1;
@@ -164,7 +164,7 @@ std::vector<double> neighborhood_noise(const CleanPoints& cloud, const Neighborh
 namespace {
 
 /// Each round averages over one more neighborhood. Three rounds remove noise of a whole spacing.
-constexpr int most_rounds = 5;
+constexpr int max_rounds = 5;
 
 void find_noise(const CleanPoints& cloud, const CloudOptions& options, NoisyPlanes& result) {
   Noise whole;
@@ -205,7 +205,7 @@ NoisyPlanes find_noisy_planes(CleanPoints& cloud, std::span<const Vec3> normals,
   NoisyPlanes result = find_planes(cloud, normals, search, options);
   CloudOptions quiet = options;
   quiet.progress.report = nullptr;
-  const int rounds = options.smooth ? 1 : most_rounds;
+  const int rounds = options.smooth ? 1 : max_rounds;
   for (int round = 0; round < rounds; ++round) {
     const std::vector<char> noisy = find_noisy_parts(cloud, result, *search, options);
     if (std::find(noisy.begin(), noisy.end(), 1) == noisy.end() ||
@@ -231,7 +231,7 @@ constexpr double noisy_share = 0.12;
 constexpr double quiet_share = 0.06;
 
 /// A quadric has six coefficients; points with fewer neighbors than this are not smoothed.
-constexpr std::size_t least_fitted = 10;
+constexpr std::size_t min_fit_points = 10;
 
 /// Test for volumes: at this many points of a part, both the neighborhood and one `wider_by` times as large must be as thick as
 /// wide. This holds at 85 % of the points at most on surfaces with noise of a whole spacing, and at all points in volumes of
@@ -269,7 +269,7 @@ class QuadricFit {
       right += weight * dot(normal, offset) * row;
       ++count;
     }
-    if (count < least_fitted) return {};
+    if (count < min_fit_points) return {};
     const double height = width * matrix.selfadjointView<Eigen::Lower>().ldlt().solve(right)[0];
     return std::abs(height) <= farthest_move * radius ? std::optional(height) : std::nullopt;
   }
@@ -358,7 +358,7 @@ bool smooth_points(CleanPoints& cloud, const NoisyPlanes& planes, const std::vec
         find_within(cloud, i, radius, search, within, squared);
         neighbors = within;
       }
-      if (neighbors.size() < least_fitted) continue;
+      if (neighbors.size() < min_fit_points) continue;
       cloud.smoothed[i] = 1;
       const auto height = quadric.height(i, neighbors, radius, noise[i]);
       if (!height) continue;

@@ -35,7 +35,7 @@ constexpr double thick_share = 0.15;
 constexpr double noise_for_heat = 0.5;
 /// Local triangulations agree in at least 0.87 of their triangles on surfaces, and in 0.48 to 0.77 on foliage, scanned
 /// buildings and sheets one spacing apart.
-constexpr double least_agreement = 0.8;
+constexpr double min_agreement = 0.8;
 /// Coordinate steps above `coarse_step` times the mean edge length hide the surface. Steps above `grid_step` times it also
 /// occur on regular grids.
 constexpr double coarse_step = 0.1, grid_step = 0.4;
@@ -134,14 +134,14 @@ std::vector<char> orient(const CleanPoints& cloud, const WeightedEdges& edges, s
                          TangentPlanes& planes, CloudDetails& report) {
   const bool signs_given = !given.empty() && options.normal_signs == NormalSigns::automatic;
   const std::vector<Index> turned = orient_normals(cloud, edges, signs_given, parts, cut, options.threads, planes);
-  std::vector<char> trusted = cut;
+  std::vector<char> consistent_signs = cut;
   report.turned = 0;
   for (std::size_t part = 0; part < turned.size() && signs_given; ++part) {
     report.turned += turned[part];
-    if (turned[part] == 0) trusted[part] = 1;
+    if (turned[part] == 0) consistent_signs[part] = 1;
   }
-  report.oriented = std::find(trusted.begin(), trusted.end(), 0) == trusted.end();
-  return trusted;
+  report.oriented = std::find(consistent_signs.begin(), consistent_signs.end(), 0) == consistent_signs.end();
+  return consistent_signs;
 }
 
 /// The nearest neighbor that has a mass, if it or the point was smoothed; -1: none.
@@ -295,9 +295,9 @@ PointCloudSurface PointCloudSurface::build(std::span<const Vec3> input, std::spa
   details.seconds_laplacian = stopwatch.lap();
 
   const std::vector<Index> vertex_of_clean = number_vertices(cloud, edges, *search, kept, details);
-  const std::vector<char> trusted = orient(cloud, edges, normals, *parts, cut, options, planes, details);
-  CsrGraphData data = tangent_edges(cloud, planes, edges, vertex_of_clean, details.vertices, per_part(*parts, trusted),
-                                    noise, options.threads, details);
+  const std::vector<char> consistent_signs = orient(cloud, edges, normals, *parts, cut, options, planes, details);
+  CsrGraphData data = tangent_edges(cloud, planes, edges, vertex_of_clean, details.vertices,
+                                    per_part(*parts, consistent_signs), noise, options.threads, details);
   fill_vertex_data(data, cloud, planes, edges, vertex_of_clean, details.vertices, options.threads);
   details.agreement = agreement(local);
   number_corners(triangles, vertex_of_clean);
@@ -326,7 +326,7 @@ PointCloudSurface PointCloudSurface::build(std::span<const Vec3> input, std::spa
 
 Method PointCloudSurface::suggested_method() const {
   const bool is_noisy = details_.noise > noise_for_heat * graph_->mean_edge_length() * graph_->length_unit();
-  return is_noisy || details_.agreement < least_agreement ? Method::heat : Method::polar;
+  return is_noisy || details_.agreement < min_agreement ? Method::heat : Method::polar;
 }
 
 FlatTriangles PointCloudSurface::flat_approximation() const {

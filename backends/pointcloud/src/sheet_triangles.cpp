@@ -18,9 +18,9 @@ namespace {
 using std::numbers::pi;
 
 /// Holes with more edges stay open, because they are gaps in the sampling.
-constexpr std::size_t most_hole_edges = 12;
+constexpr std::size_t max_hole_edges = 12;
 /// A triangle flatter than this fraction of its longest side has no reliable angles.
-constexpr double least_height = 1e-6;
+constexpr double min_height = 1e-6;
 /// Typical number of triangles at a vertex.
 constexpr std::size_t usual_degree = 8;
 /// Dropping a fan may open a hole. On real shapes nothing changes after the second round.
@@ -86,7 +86,7 @@ class Sheet {
     while (!queue.empty()) {
       const Index v = queue.back();
       queue.pop_back();
-      for (const Index triangle : beside_widest_fan(v)) {
+      for (const Index triangle : triangles_outside_widest_fan(v)) {
         drop(triangle);
         for (const Index corner : triangles_[triangle])
           if (corner != v) queue.push_back(corner);
@@ -130,7 +130,7 @@ class Sheet {
     const Vec3 a = frames_[t[1]].origin - frames_[t[0]].origin, b = frames_[t[2]].origin - frames_[t[0]].origin,
                normal = cross(a, b);
     const double longest = std::max({norm(a), norm(b), norm(b - a)});
-    if (!(norm(normal) > least_height * longest * longest)) return false;
+    if (!(norm(normal) > min_height * longest * longest)) return false;
     const bool up = dot(normal, frames_[t[0]].normal) > 0;
     for (int c = 1; c < 3; ++c) {
       const bool agrees = dot(frames_[t[0]].normal, frames_[t[c]].normal) > 0;
@@ -150,7 +150,7 @@ class Sheet {
                  back = counter_clockwise(at_b, at_a);
     const auto triangle = static_cast<Index>(triangles_.size());
     const Wedge wedge = turn < pi ? Wedge{triangle, a, b, at_a, turn} : Wedge{triangle, b, a, at_b, back};
-    return wedge.extent > least_height && wedge.extent < pi ? std::optional(wedge) : std::nullopt;
+    return wedge.extent > min_height && wedge.extent < pi ? std::optional(wedge) : std::nullopt;
   }
 
   const Wedge& following(Index v, std::size_t k) const { return wedges_[v][(k + 1) % wedges_[v].size()]; }
@@ -179,7 +179,7 @@ class Sheet {
     std::vector<Index> loop{start};
     const Index last = across_gap(start, first);
     for (Index before = start, at = first;;) {
-      if (at <= start || loop.size() == most_hole_edges || std::ranges::find(loop, at) != loop.end()) return {};
+      if (at <= start || loop.size() == max_hole_edges || std::ranges::find(loop, at) != loop.end()) return {};
       loop.push_back(at);
       const Index next = across_gap(at, before);
       if (next < 0) return {};
@@ -206,7 +206,7 @@ class Sheet {
     }
   }
 
-  std::vector<Index> beside_widest_fan(Index v) const {
+  std::vector<Index> triangles_outside_widest_fan(Index v) const {
     const auto& at = wedges_[v];
     std::size_t start = 0;
     while (start < at.size() && at[(start + at.size() - 1) % at.size()].left == at[start].right) ++start;
@@ -254,13 +254,13 @@ class Sheet {
 /// Order in which triangles are added: more votes first. Triangles with three votes hardly ever overlap, so they stay in the
 /// order of memory. The others are sorted by size, smaller ones first.
 std::vector<Index> by_votes(std::span<const Frame> frames, const LocalTriangles& candidates) {
-  struct Disputed {
+  struct DisputedTriangle {
     Index triangle;
     int votes;
     double longest;
   };
   std::vector<Index> order;
-  std::vector<Disputed> disputed;
+  std::vector<DisputedTriangle> disputed;
   for (Index t = 0; t < static_cast<Index>(candidates.triangles.size()); ++t) {
     if (candidates.votes[t] == 3) {
       order.push_back(t);
@@ -270,10 +270,10 @@ std::vector<Index> by_votes(std::span<const Frame> frames, const LocalTriangles&
     const auto side = [&](Index i, Index j) { return distance(frames[i].origin, frames[j].origin); };
     disputed.push_back({t, candidates.votes[t], std::max({side(a, b), side(b, c), side(c, a)})});
   }
-  std::ranges::sort(disputed, [](const Disputed& a, const Disputed& b) {
+  std::ranges::sort(disputed, [](const DisputedTriangle& a, const DisputedTriangle& b) {
     return std::tuple(-a.votes, a.longest, a.triangle) < std::tuple(-b.votes, b.longest, b.triangle);
   });
-  for (const Disputed& d : disputed) order.push_back(d.triangle);
+  for (const DisputedTriangle& d : disputed) order.push_back(d.triangle);
   return order;
 }
 

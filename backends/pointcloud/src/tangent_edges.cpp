@@ -130,12 +130,13 @@ struct RowPlaces {
 }  // namespace
 
 CsrGraphData tangent_edges(const CleanPoints& cloud, const TangentPlanes& planes, const WeightedEdges& edges,
-                           const std::vector<Index>& vertex_of_clean, Index vertices, const PerPart& trusted,
+                           const std::vector<Index>& vertex_of_clean, Index vertices, const PerPart& consistent_signs,
                            const PerPart& noise, unsigned threads, CloudDetails& report,
                            std::optional<TransportKind> kind) {
   const auto count = static_cast<Offset>(edges.tails.size());
   auto is_reflection = [&](std::size_t e) {
-    return trusted.at(edges.tails[e]) == 0 && dot(planes.normals[edges.tails[e]], planes.normals[edges.heads[e]]) < 0;
+    return consistent_signs.at(edges.tails[e]) == 0 &&
+           dot(planes.normals[edges.tails[e]], planes.normals[edges.heads[e]]) < 0;
   };
   std::atomic<Offset> reflections{0};
   detail::parallel_chunks(count, edges_per_task, threads, [&](Offset begin, Offset end) {

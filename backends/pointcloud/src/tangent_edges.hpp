@@ -31,12 +31,12 @@ Vec3 unfolded_edge(const Vec3& tail, const Vec3& head, const Vec3& edge, double 
 bool leaves_surface(const Vec3& tail, const Vec3& head, const Vec3& edge, double noise);
 
 /// Builds the graph from oriented normals and weighted edges. Its vertices are the points that a triangle touches. Where
-/// `trusted` is 0, an edge between opposed normals is a reflection; elsewhere it is a rotation by more than 90 degrees.
+/// `consistent_signs` is 0, an edge between opposed normals is a reflection; elsewhere it is a rotation by more than 90 degrees.
 /// @param vertex_of_clean  vertex of each clean point, -1: none
 /// @param noise            standard deviation of offsets across the surface, in units of the clean points
 /// @param kind             storage of the transports; none: blocks if there is a reflection
 CsrGraphData tangent_edges(const CleanPoints& cloud, const TangentPlanes& planes, const WeightedEdges& edges,
-                           const std::vector<Index>& vertex_of_clean, Index vertices, const PerPart& trusted,
+                           const std::vector<Index>& vertex_of_clean, Index vertices, const PerPart& consistent_signs,
                            const PerPart& noise, unsigned threads, CloudDetails& report,
                            std::optional<TransportKind> kind = {});
 

@@ -23,15 +23,15 @@ namespace {
 /// An input plane is contradicted if its slope is this many times that of the plane fitted to the points, and larger than that
 /// of normals written with three digits.
 constexpr double contradiction = 2;
-constexpr double least_slope = 2e-3;
+constexpr double min_slope = 2e-3;
 
 /// An input plane is also contradicted if it differs from the planes around it by this many times the angle between fitted
 /// planes, and by at least this angle. This criterion works on points too noisy for slopes.
 constexpr double disagreement = 2;
-constexpr double least_disagreement = 0.1;
+constexpr double min_disagreement = 0.1;
 
 /// Number of neighbors that measure how well planes fit.
-constexpr std::size_t most_neighbors = 12;
+constexpr std::size_t max_neighbors = 12;
 
 /// Input planes of neighbors that bend by more than this differ from opposite planes only by their signs, which may be wrong.
 /// At sharper creases the fitted planes are used, which bend gradually.
@@ -50,11 +50,11 @@ double third(std::span<double> values) { return detail::value_at(values, values.
 /// How well a field of normals fits the points around point i. Between two correct planes a neighbor lies in their mean plane,
 /// whatever the curvature. Returns the 33rd percentile of the slopes over that plane, and of the angles between the planes in
 /// radians, over the nearest neighbors. Other faces of a corner and other sheets then have no influence.
-Fit fit_of(const CleanPoints& cloud, const Neighborhoods& neighborhoods, std::span<const Vec3> normals, Index i) {
-  std::array<double, most_neighbors> slopes, angles;
+Fit measure_fit(const CleanPoints& cloud, const Neighborhoods& neighborhoods, std::span<const Vec3> normals, Index i) {
+  std::array<double, max_neighbors> slopes, angles;
   std::size_t count = 0;
   for (Index j : neighborhoods.of(i)) {
-    if (count == most_neighbors) break;
+    if (count == max_neighbors) break;
     if (normals[j] == Vec3{0, 0, 0}) continue;
     const Vec3 edge = cloud.points[j] - cloud.points[i];
     const MeanPlane mean(normals[i], normals[j]);
@@ -66,8 +66,8 @@ Fit fit_of(const CleanPoints& cloud, const Neighborhoods& neighborhoods, std::sp
 }
 
 bool contradicts(const Fit& given, const Fit& fitted) {
-  return given.slope > std::max(least_slope, contradiction * fitted.slope) ||
-         given.disagreement > std::max(least_disagreement, disagreement * fitted.disagreement);
+  return given.slope > std::max(min_slope, contradiction * fitted.slope) ||
+         given.disagreement > std::max(min_disagreement, disagreement * fitted.disagreement);
 }
 
 /// Also marks points with mostly marked neighbors: some of many noisy normals are correct by chance.
@@ -103,8 +103,8 @@ bool is_beside_crease(const CleanPoints& cloud, const Neighborhoods& neighborhoo
 
 }  // namespace
 
-std::vector<char> take_given_planes(const CleanPoints& cloud, const Neighborhoods& neighborhoods,
-                                    std::span<const Vec3> given, unsigned threads, TangentPlanes& planes) {
+std::vector<char> apply_input_planes(const CleanPoints& cloud, const Neighborhoods& neighborhoods,
+                                     std::span<const Vec3> given, unsigned threads, TangentPlanes& planes) {
   const auto n = static_cast<Offset>(cloud.points.size());
   std::vector<char> missing(static_cast<std::size_t>(n), 0), contradicted = missing, beside_crease = missing;
   detail::parallel_chunks(n, points_per_task, threads, [&](Offset begin, Offset end) {
@@ -112,8 +112,8 @@ std::vector<char> take_given_planes(const CleanPoints& cloud, const Neighborhood
       const auto point = static_cast<Index>(i);
       missing[i] = given[i] == Vec3{0, 0, 0};
       if (missing[i] || !planes.has_plane(point)) continue;
-      contradicted[i] =
-          contradicts(fit_of(cloud, neighborhoods, given, point), fit_of(cloud, neighborhoods, planes.normals, point));
+      contradicted[i] = contradicts(measure_fit(cloud, neighborhoods, given, point),
+                                    measure_fit(cloud, neighborhoods, planes.normals, point));
       beside_crease[i] = !contradicted[i] && is_beside_crease(cloud, neighborhoods, given, planes.normals, point);
     }
   });
@@ -140,10 +140,10 @@ constexpr double narrow_ratio = 1e-3;
 constexpr double bent_ratio = 0.05;
 
 /// With fewer points a curve cannot be distinguished from a plane.
-constexpr std::size_t least_on_curve = 8;
+constexpr std::size_t min_curve_points = 8;
 
 /// Fewer neighbors than half of this number are too few for a one-ring of triangles.
-constexpr std::size_t least_neighbors = 8;
+constexpr std::size_t min_neighbors = 8;
 
 /// Buffers of one thread's queries.
 struct QueryBuffers {
@@ -166,7 +166,7 @@ std::span<const Index> whole_shells(std::span<const Vec3> points, Index i, std::
   const double beyond = squared(most) * (1 - equal_distances);
   std::size_t count = most;
   while (count > 0 && squared(count - 1) >= beyond) --count;
-  return neighbors.first(2 * count >= std::max(most, least_neighbors) ? count : most);
+  return neighbors.first(2 * count >= std::max(most, min_neighbors) ? count : most);
 }
 
 /// The k neighbors of point i, nearest first, without i; valid until the next use of the buffers.
@@ -235,8 +235,8 @@ void compact(const std::vector<Index>& counts, Neighborhoods& result) {
 
 /// Whether point i and its neighbors lie along a curve in their plane, as on a scan line around a pipe. The tolerance to a
 /// parabola is that of narrow neighborhoods to a line.
-bool on_a_curve(std::span<const Vec3> points, Index i, std::span<const Index> neighbors, const PlaneFit& fit) {
-  if (neighbors.size() < least_on_curve) return false;
+bool is_on_curve(std::span<const Vec3> points, Index i, std::span<const Index> neighbors, const PlaneFit& fit) {
+  if (neighbors.size() < min_curve_points) return false;
   const Vec3 across = cross(fit.normal, fit.along);
   const double unit = norm(points[neighbors.back()] - points[i]);
   // Least-squares fit of (1, s, s^2) to t, where s runs along the neighborhood and t across it.
@@ -259,7 +259,7 @@ bool on_a_curve(std::span<const Vec3> points, Index i, std::span<const Index> ne
 
 /// Whether the neighbors do not determine a plane.
 bool is_narrow(const PlaneFit& fit, std::span<const Vec3> points, Index i, std::span<const Index> neighbors) {
-  return !(fit.ratio > narrow_ratio) || (fit.ratio < bent_ratio && on_a_curve(points, i, neighbors, fit));
+  return !(fit.ratio > narrow_ratio) || (fit.ratio < bent_ratio && is_on_curve(points, i, neighbors, fit));
 }
 
 /// More neighbors for a point with a narrow neighborhood.
@@ -418,7 +418,7 @@ TangentPlanes find_tangent_planes(const CleanPoints& cloud, std::span<const Vec3
   } else {
     std::vector<Vec3> directions(static_cast<std::size_t>(n));
     for (Offset i = 0; i < n; ++i) directions[i] = direction(given[cloud.input[i]]);
-    missing = take_given_planes(cloud, neighborhoods, directions, options.threads, planes);
+    missing = apply_input_planes(cloud, neighborhoods, directions, options.threads, planes);
   }
   for (Index i = 0; planes.estimated < static_cast<Index>(n) && i < static_cast<Index>(n); ++i) {
     if (!missing[i]) continue;

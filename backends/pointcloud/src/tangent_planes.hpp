@@ -79,7 +79,7 @@ struct PlaneAxes {
 /// Replaces the fitted planes of `planes` by input planes (zero: none), except where the points contradict them or they meet in
 /// a sharp crease. There the fitted plane stays, on the side of the input normal. Fills the counts of `planes`.
 /// @return for each point, whether the input has neither plane nor side
-std::vector<char> take_given_planes(const CleanPoints& cloud, const Neighborhoods& neighborhoods,
-                                    std::span<const Vec3> given, unsigned threads, TangentPlanes& planes);
+std::vector<char> apply_input_planes(const CleanPoints& cloud, const Neighborhoods& neighborhoods,
+                                     std::span<const Vec3> given, unsigned threads, TangentPlanes& planes);
 
 }  // namespace ahm::pointcloud

@@ -56,7 +56,7 @@ class TuftedCover {
   }
 
   /// For each part, the least length that keeps every face away from degeneracy when added to every edge ([SC20] Sec. 4.5).
-  std::vector<double> least_mollification(const CloudParts& parts) const {
+  std::vector<double> min_mollification(const CloudParts& parts) const {
     std::vector<double> sum(static_cast<std::size_t>(parts.count), 0.0), epsilon = sum;
     std::vector<Offset> sides(sum.size(), 0);
     for (std::size_t h = 0; h < length_.size(); ++h) {
@@ -324,7 +324,7 @@ WeightedEdges tufted_laplacian(const CleanPoints& cloud, const TangentPlanes& pl
                                const std::vector<Triangle>& triangles, const CloudParts& parts, unsigned threads,
                                CloudDetails& report) {
   TuftedCover cover(cloud, planes, triangles, threads);
-  std::vector<double> epsilon = cover.least_mollification(parts);
+  std::vector<double> epsilon = cover.min_mollification(parts);
   report.mollification = *std::max_element(epsilon.begin(), epsilon.end());
   cover.mollify(PerPart(parts.of_point, std::move(epsilon)));
   report.flips = cover.flip_to_delaunay();

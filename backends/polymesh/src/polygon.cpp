@@ -21,7 +21,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 /// Triangles thinner than this, relative to their longest side, are treated as if they had this height.
-constexpr double least_height = 1e-10;
+constexpr double min_height = 1e-10;
 
 /// The x with the smallest |x| that minimizes |S x - b|, for symmetric positive semi-definite S. Treats eigenvalues below
 /// `threshold` times the largest one as zero.
@@ -33,10 +33,10 @@ Vector3d solve_least(const Matrix3d& S, const Vector3d& b, double threshold) {
   return eigen.eigenvectors() * y;
 }
 
-/// Twice the area of a triangle, at least `least_height` times its longest side squared.
+/// Twice the area of a triangle, at least `min_height` times its longest side squared.
 double doubled_area(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
   const double longest = std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
-  return std::max((b - a).cross(c - a).norm(), least_height * longest);
+  return std::max((b - a).cross(c - a).norm(), min_height * longest);
 }
 
 }  // namespace
@@ -94,13 +94,13 @@ bool Polygon::is_collinear() const {
   const auto away = [&](const Vector3d& x) { return (x - corner_[0]).norm(); };
   const Vector3d end = *std::max_element(corner_.begin(), corner_.end(),
                                          [&](const auto& a, const auto& b) { return away(a) < away(b); });
-  const double length = away(end), least = std::max(least_height * length, 0x1p-50);
+  const double length = away(end), least = std::max(min_height * length, 0x1p-50);
   return length <= least || std::all_of(corner_.begin(), corner_.end(), [&](const Vector3d& x) {
            return (x - corner_[0]).cross(end - corner_[0]).norm() <= least * length;
          });
 }
 
-bool Polygon::folds() const {
+bool Polygon::is_folded() const {
   const Vector3d area = vector_area();
   for (std::size_t c = 0; c < size(); ++c) {
     const Vector3d of_triangle = 0.5 * (corner_[c] - middle_).cross(corner_[(c + 1) % size()] - middle_);
@@ -113,10 +113,10 @@ bool Polygon::cut_ears(std::vector<std::array<std::size_t, 3>>& triangles) const
   const Vector3d area = vector_area();
   const Vector3d normal = area.norm() > 0 ? Vector3d(area.normalized()) : Vector3d(0, 0, 1);
   const Vector3d x = normal.unitOrthogonal(), y = normal.cross(x);
-  std::vector<Eigen::Vector2d> seen;
-  for (const Vector3d& c : corner_) seen.emplace_back(x.dot(c), y.dot(c));
+  std::vector<Eigen::Vector2d> in_plane;
+  for (const Vector3d& c : corner_) in_plane.emplace_back(x.dot(c), y.dot(c));
   auto turn = [&](std::size_t a, std::size_t b, std::size_t c) {
-    const Eigen::Vector2d u = seen[b] - seen[a], v = seen[c] - seen[b];
+    const Eigen::Vector2d u = in_plane[b] - in_plane[a], v = in_plane[c] - in_plane[b];
     return u[0] * v[1] - u[1] * v[0];
   };
   std::vector<std::size_t> left(size());
@@ -128,8 +128,8 @@ bool Polygon::cut_ears(std::vector<std::array<std::size_t, 3>>& triangles) const
     double most = 0;
     for (std::size_t k = 0; k < left.size(); ++k) {
       const std::size_t a = left[(k + left.size() - 1) % left.size()], b = left[k], c = left[(k + 1) % left.size()];
-      const double sides =
-          (seen[b] - seen[a]).squaredNorm() + (seen[c] - seen[b]).squaredNorm() + (seen[a] - seen[c]).squaredNorm();
+      const double sides = (in_plane[b] - in_plane[a]).squaredNorm() + (in_plane[c] - in_plane[b]).squaredNorm() +
+                           (in_plane[a] - in_plane[c]).squaredNorm();
       const double roundness = turn(a, b, c) / sides;
       if (!(roundness > std::max(most, 1e-12))) continue;
       const bool empty = std::none_of(left.begin(), left.end(), [&](std::size_t p) {
@@ -288,7 +288,7 @@ using Eigen::Vector3d;
 constexpr double largest_weight = 1e4;
 
 /// Least weight of a sliver on the boundary; keeps vertices connected that have no other faces.
-constexpr double least_conductance = 1e-3;
+constexpr double min_conductance = 1e-3;
 
 /// Stiffness and mass of every face, and their statistics.
 class FaceMatrices {
@@ -334,8 +334,8 @@ class FaceMatrices {
       const detail::Half a = edges.next(base), b = edges.previous(base);
       const double weight_a = side_weight(a), weight_b = side_weight(b);
       set_side_weight(base, 0);
-      set_side_weight(a, std::max(0.25 / weight_b, least_conductance));
-      set_side_weight(b, std::max(0.25 / weight_a, least_conductance));
+      set_side_weight(a, std::max(0.25 / weight_b, min_conductance));
+      set_side_weight(b, std::max(0.25 / weight_a, min_conductance));
       for (const detail::Half side : {a, b})
         if (edges.twin[side] >= 0) outer.push_back(edges.twin[side]);
     }
@@ -446,8 +446,8 @@ void measure_sides(const PolygonMesh& mesh, CsrGraphData& g, PolygonDetails& rep
 /// The chord projected to a tangent plane and scaled to its own length, by a factor of at most 10.
 std::complex<double> log_of_chord(const Axes& axes, const Vector3d& chord) {
   const std::complex<double> projected = axes.components(chord);
-  const double length = chord.norm(), seen = std::abs(projected);
-  return seen > 0.1 * length ? length / seen * projected : 10.0 * projected;
+  const double length = chord.norm(), in_plane = std::abs(projected);
+  return in_plane > 0.1 * length ? length / in_plane * projected : 10.0 * projected;
 }
 
 /// Writes R_ji for corners i and j of one face, as the graph stores it.

@@ -33,7 +33,7 @@ class Polygon {
   /// Whether all corners lie on one line, to 1e-10 of its length or rounding.
   bool is_collinear() const;
   /// Whether a triangle at p faces away from the vector area.
-  bool folds() const;
+  bool is_folded() const;
   /// Cuts ears off the polygon, projected along its vector area, and appends them as numbers of corners. If the projected
   /// outline crosses itself, cuts a quad along a diagonal, and appends nothing for other polygons.
   /// @return whether triangles were appended

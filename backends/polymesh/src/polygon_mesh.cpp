@@ -73,11 +73,11 @@ Refinement PolygonMesh::refined() const {
     } else {
       polygon.read(*this, f);
       ears.clear();
-      const bool folds = !polygon.is_collinear() && polygon.folds();
-      if (folds && polygon.cut_ears(ears)) {
+      const bool is_folded = !polygon.is_collinear() && polygon.is_folded();
+      if (is_folded && polygon.cut_ears(ears)) {
         for (const auto& [a, b, c] : ears) result.triangles.push_back({corners[a], corners[b], corners[c]});
       } else {
-        if (folds) result.folded.push_back(f);
+        if (is_folded) result.folded.push_back(f);
         const auto middle = static_cast<Index>(result.positions.size());
         result.positions.push_back(polygon.blend(result.positions, corners));
         for (std::size_t s = 0; s < corners.size(); ++s)

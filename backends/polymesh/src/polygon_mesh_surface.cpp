@@ -347,9 +347,10 @@ std::vector<Warning> PolygonMeshSurface::warnings() const {
   };
   warn_of("collinear_faces", d.collinear);
   if (impl_->refined) {
-    const std::vector<Warning> told = ahm::warnings(impl_->refined->details().topology);
+    const std::vector<Warning> topology_warnings = ahm::warnings(impl_->refined->details().topology);
     for (Warning& warning : impl_->refined->warnings())
-      if (std::ranges::find(told, warning.id, &Warning::id) == told.end() && warning.id != "collinear_faces")
+      if (std::ranges::find(topology_warnings, warning.id, &Warning::id) == topology_warnings.end() &&
+          warning.id != "collinear_faces")
         result.push_back(std::move(warning));  // collinear triangles of a refinement are no input faces
     return result;
   }

@@ -35,15 +35,16 @@ const std::vector<Rule>& rules() {
 }
 
 /// A kind of intermediate file, and the stage from which it is not needed.
-struct Passing {
+struct TemporaryFile {
   std::string_view kind;
   Stage stage;
 };
-constexpr Passing passing[] = {{cut_kind, Stage::indexed},           {kind::noise, Stage::measured},
-                               {kind::lengths, Stage::triangulated}, {kind::neighbors, Stage::triangulated},
-                               {kind::triangles, Stage::oriented},   {kind::surroundings, Stage::built},
-                               {kind::edges, Stage::built},          {kind::vertices, Stage::built},
-                               {kind::points, Stage::built}};
+constexpr TemporaryFile temporary_files[] = {
+    {cut_kind, Stage::indexed},           {kind::noise, Stage::measured},
+    {kind::lengths, Stage::triangulated}, {kind::neighbors, Stage::triangulated},
+    {kind::triangles, Stage::oriented},   {kind::surroundings, Stage::built},
+    {kind::edges, Stage::built},          {kind::vertices, Stage::built},
+    {kind::points, Stage::built}};
 
 const Rule& rule_of(std::string_view name) {
   std::string names;
@@ -89,7 +90,7 @@ void require_graph(const TileFolder& folder, const std::filesystem::path& path) 
 
 void TileFolder::tidy() const {
   if (options_.keep) return;
-  for (const Passing& p : passing)
+  for (const TemporaryFile& p : temporary_files)
     for (std::size_t t = 0; manifest_.stage >= p.stage && t < tiles(); ++t) std::filesystem::remove(file(p.kind, t));
 }
 

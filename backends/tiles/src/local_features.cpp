@@ -17,7 +17,7 @@ class Count final : public LocalFeature {
  public:
   void enter(std::span<const Index>) override { count_.clear(); }
   void add(const VertexMap& map) override { count_.push_back(static_cast<Index>(map.neighbors.size())); }
-  void put(std::vector<NamedArray>& arrays) const override { arrays.push_back(array("count", count_)); }
+  void append_to(std::vector<NamedArray>& arrays) const override { arrays.push_back(array("count", count_)); }
 
  private:
   std::vector<Index> count_;
@@ -31,7 +31,7 @@ class Area final : public LocalFeature {
     for (double weight : map.weights) sum += weight;
     area_.push_back(sum);
   }
-  void put(std::vector<NamedArray>& arrays) const override { arrays.push_back(array("area", area_)); }
+  void append_to(std::vector<NamedArray>& arrays) const override { arrays.push_back(array("area", area_)); }
 
  private:
   std::vector<double> area_;
@@ -70,7 +70,7 @@ class Means final : public LocalFeature {
     }
     for (std::size_t c = 0; c < width; ++c) means_[first + c] /= all;
   }
-  void put(std::vector<NamedArray>& arrays) const override { arrays.push_back(array("mean", means_)); }
+  void append_to(std::vector<NamedArray>& arrays) const override { arrays.push_back(array("mean", means_)); }
 
  private:
   /// Appends the mean over the rows of a vertex for each column. @return whether the vertex has rows
@@ -111,7 +111,7 @@ class Curvature final : public LocalFeature {
     curvatures_.push_back(values);
     directions_.push_back(direction[0] * frame.x + direction[1] * frame.y);
   }
-  void put(std::vector<NamedArray>& arrays) const override {
+  void append_to(std::vector<NamedArray>& arrays) const override {
     arrays.push_back(array("curvatures", curvatures_));
     arrays.push_back(array("directions", directions_));
   }

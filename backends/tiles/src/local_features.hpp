@@ -35,7 +35,7 @@ class LocalFeature {
   /// Computes the feature of one map.
   virtual void add(const VertexMap& map) = 0;
   /// Appends views of the features computed since `enter`.
-  virtual void put(std::vector<NamedArray>& arrays) const = 0;
+  virtual void append_to(std::vector<NamedArray>& arrays) const = 0;
 };
 
 using LocalFeatures = std::vector<std::unique_ptr<LocalFeature>>;

@@ -36,7 +36,7 @@ void write_finished(const std::filesystem::path& folder, const nlohmann::json& s
   file.commit();
 }
 
-MapTile::MapTile(std::size_t vertices, MarchGoal goal) : distance(vertices, NAN), status(vertices, untold) {
+MapTile::MapTile(std::size_t vertices, MarchGoal goal) : distance(vertices, NAN), status(vertices, not_set) {
   if (goal == MarchGoal::distances) return;
   coordinates.assign(2 * vertices, NAN);
   spread.assign(vertices, NAN);
@@ -67,7 +67,7 @@ void MapTile::write(const std::filesystem::path& path) const {
 
 void MapTile::clear(std::size_t row) {
   distance[row] = NAN;
-  status[row] = untold;
+  status[row] = not_set;
   if (coordinates.empty()) return;
   coordinates[2 * row] = coordinates[2 * row + 1] = spread[row] = NAN;
 }
@@ -88,38 +88,38 @@ MapWriter::MapWriter(const TiledGraph& graph, const std::filesystem::path& folde
   for (std::size_t t = 0; t < tiles_.size(); ++t) left_.push_back(vertices(t));
 }
 
-void MapWriter::begin_anew() {
+void MapWriter::remove_own_files() {
   for (std::size_t t = 0; t < tiles_.size(); ++t)
     if (owners_.owns(t)) std::filesystem::remove(path(t));
 }
 
-void MapWriter::go_on(const MarchState& state, std::int64_t ok, double farthest) {
+void MapWriter::resume_from(const MarchState& state, std::int64_t ok, double farthest) {
   ok_ = ok;
   farthest_ = farthest;
-  std::vector<char> told;
+  std::vector<char> is_done;
   for (std::size_t t = 0; t < tiles_.size(); ++t) {
     if (!owners_.owns(t)) continue;
     const Index first = graph_.first_vertex(t), last = graph_.first_vertex(t + 1);
-    told.assign(static_cast<std::size_t>(vertices(t)), 0);
-    const auto tell = [&](Index begin, Index end) {
+    is_done.assign(static_cast<std::size_t>(vertices(t)), 0);
+    const auto mark_done = [&](Index begin, Index end) {
       for (Index i = std::max(begin, first); i < std::min(end, last); ++i)
-        told[static_cast<std::size_t>(i - first)] = 1;
+        is_done[static_cast<std::size_t>(i - first)] = 1;
     };
     auto at = std::lower_bound(state.vertices.begin(), state.vertices.end(), first);
-    for (; at != state.vertices.end() && *at < last; ++at) tell(*at, *at + 1);
+    for (; at != state.vertices.end() && *at < last; ++at) mark_done(*at, *at + 1);
     // Begins and ends ascend, so an odd number of them up to `first` means that `first` is inside a run.
     const auto up_to = std::upper_bound(state.passed.begin(), state.passed.end(), first) - state.passed.begin();
     for (auto run = static_cast<std::size_t>(up_to - up_to % 2); run < state.passed.size() && state.passed[run] < last;
          run += 2)
-      tell(state.passed[run], state.passed[run + 1]);
-    const auto count = static_cast<Index>(std::count(told.begin(), told.end(), 1));
+      mark_done(state.passed[run], state.passed[run + 1]);
+    const auto count = static_cast<Index>(std::count(is_done.begin(), is_done.end(), 1));
     left_[t] -= count;
     begun_[t] = count > 0;
     if (count == 0) std::filesystem::remove(path(t));
     if (count == 0 || left_[t] == 0) continue;
     MapTile& tile = open(t);
-    for (std::size_t i = 0; i < told.size(); ++i)
-      if (told[i] == 0) tile.clear(i);
+    for (std::size_t i = 0; i < is_done.size(); ++i)
+      if (is_done[i] == 0) tile.clear(i);
     tile.is_saved = false;
   }
 }
@@ -156,7 +156,7 @@ void MapWriter::finish(const Source& source, double radius) {
     MapTile& tile = open(t);
     const auto component = graph_.rows(t).component;
     for (std::size_t i = 0; i < tile.status.size(); ++i)
-      if (tile.status[i] == MapTile::untold)
+      if (tile.status[i] == MapTile::not_set)
         tile.status[i] = static_cast<std::uint8_t>(reached.contains(component[i]) ? why : Status::disconnected);
     tile.is_saved = false;
     close(t);
@@ -246,11 +246,11 @@ ArrayFile MapCheckpoint::open_state(int rank) const {
 
 std::optional<MarchState> MapCheckpoint::begin() {
   if (begun_at_ == 0) {
-    writer_->begin_anew();
+    writer_->remove_own_files();
     return std::nullopt;
   }
   const bool is_own = ranks_ == owners_.ranks && std::ranges::equal(open_state(0).get<int>("owners"), owners_.of_tile);
-  return is_own ? own_state() : dealt_state();
+  return is_own ? own_state() : redistributed_state();
 }
 
 namespace {
@@ -280,7 +280,7 @@ MarchState MapCheckpoint::own_state() {
   take(state.values, "values");
   take(state.exponents, "exponents");
   take(state.passed, "passed");
-  writer_->go_on(state, counts[3], file.get<double>("lengths")[1]);
+  writer_->resume_from(state, counts[3], file.get<double>("lengths")[1]);
   return state;
 }
 
@@ -291,7 +291,7 @@ bool MapCheckpoint::is_near(Index vertex) const {
 }
 
 /// The state of this member from the states of all former members: each vertex from its former owner.
-MarchState MapCheckpoint::dealt_state() {
+MarchState MapCheckpoint::redistributed_state() {
   MarchState state;
   std::vector<std::pair<Index, Index>> passed;
   struct Place {
@@ -346,7 +346,7 @@ MarchState MapCheckpoint::dealt_state() {
     state.values.insert(state.values.end(), row.begin(), row.end());
     state.accepted += team_.owns(place.vertex) ? 1 : 0;
   }
-  writer_->go_on(state, owners_.rank == 0 ? ok : 0, farthest);
+  writer_->resume_from(state, owners_.rank == 0 ? ok : 0, farthest);
   return state;
 }
 

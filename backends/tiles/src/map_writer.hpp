@@ -23,10 +23,10 @@ bool is_finished(const std::filesystem::path& folder, std::uint64_t identity);
 /// Writes map.json, the last file of a map. @throws IoError
 void write_finished(const std::filesystem::path& folder, const nlohmann::json& summary);
 
-/// The rows of one tile of a map. Rows without a result have NaN and the status `untold`.
+/// The rows of one tile of a map. Rows without a result have NaN and the status `not_set`.
 struct MapTile {
   static constexpr std::string_view kind = "map";
-  static constexpr std::uint8_t untold = 255;
+  static constexpr std::uint8_t not_set = 255;
 
   MapTile(std::size_t vertices, MarchGoal goal);
   /// Reads a tile. @throws IoError
@@ -51,9 +51,9 @@ class MapWriter final : public MapSink {
             const TileOwners& owners);
 
   /// Removes the files of own tiles.
-  void begin_anew();
+  void remove_own_files();
   /// Resumes from the files of own tiles. Keeps the rows that the march had accepted in this state, and clears all later ones.
-  void go_on(const MarchState& state, std::int64_t ok, double farthest);
+  void resume_from(const MarchState& state, std::int64_t ok, double farthest);
   void put(Index vertex, const MapRow& row) override;
   /// Writes all tiles that are in memory.
   void save();
@@ -111,7 +111,7 @@ class MapCheckpoint final : public MarchKeeper {
   ArrayFile open_state(int rank) const;
   std::vector<std::uint64_t> identity_of(Index bands, int rank) const;
   MarchState own_state();
-  MarchState dealt_state();
+  MarchState redistributed_state();
   bool is_near(Index vertex) const;
 
   std::filesystem::path folder_;

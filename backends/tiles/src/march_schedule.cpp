@@ -35,7 +35,7 @@ std::vector<double> tile_distances(std::span<const Vec3> middles, std::span<cons
 }
 
 std::vector<int> deal_tiles(std::span<const Index> first, Deal deal, int ranks, std::span<const double> distances) {
-  const std::size_t tiles = first.size() - 1, hand = to_size(ranks);
+  const std::size_t tiles = first.size() - 1, rank_count = to_size(ranks);
   std::vector<int> owner(tiles);
   if (deal == Deal::ranges)
     for (std::size_t t = 0; t < tiles; ++t) {
@@ -43,7 +43,7 @@ std::vector<int> deal_tiles(std::span<const Index> first, Deal deal, int ranks, 
       owner[t] = std::min(static_cast<int>(middle * ranks / std::max<std::int64_t>(all, 1)), ranks - 1);
     }
   if (deal == Deal::cards)
-    for (std::size_t t = 0; t < tiles; ++t) owner[t] = static_cast<int>(t % hand);
+    for (std::size_t t = 0; t < tiles; ++t) owner[t] = static_cast<int>(t % rank_count);
   if (deal != Deal::arrival) return owner;
   if (distances.size() != tiles)
     throw InvalidArgument("expected one distance per tile, found " + std::to_string(distances.size()) + " for " +
@@ -51,8 +51,8 @@ std::vector<int> deal_tiles(std::span<const Index> first, Deal deal, int ranks, 
   std::vector<std::size_t> order(tiles);
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return distances[a] < distances[b]; });
-  for (std::size_t begin = 0; begin < tiles; begin += hand) {
-    const std::size_t end = std::min(begin + hand, tiles);
+  for (std::size_t begin = 0; begin < tiles; begin += rank_count) {
+    const std::size_t end = std::min(begin + rank_count, tiles);
     std::sort(order.begin() + static_cast<std::ptrdiff_t>(begin), order.begin() + static_cast<std::ptrdiff_t>(end));
     for (std::size_t k = begin; k < end; ++k) owner[order[k]] = static_cast<int>(k - begin);
   }
@@ -115,9 +115,9 @@ std::vector<BandTiles> march_schedule(const TiledGraph& graph, std::span<const V
 
 SharedLoad share_out(std::span<const BandTiles> bands, std::span<const int> owner_of_tile, int ranks) {
   SharedLoad load;
-  std::int64_t busiest = 0, active = 0, told = 0, messages = 0;
+  std::int64_t busiest = 0, active = 0, sent_total = 0, messages = 0;
   for (const BandTiles& band : bands) {
-    std::vector<std::int64_t> part(to_size(ranks), 0), telling(part);
+    std::vector<std::int64_t> part(to_size(ranks), 0), sent(part);
     std::int64_t all = 0;
     for (const auto& [tile, vertices] : band.vertices) {
       part[to_size(owner_of_tile[tile])] += vertices;
@@ -128,7 +128,7 @@ SharedLoad share_out(std::span<const BandTiles> bands, std::span<const int> owne
       const int from = owner_of_tile[tiles.first], to = owner_of_tile[tiles.second];
       if (from == to) continue;
       pairs.emplace(from, to);
-      telling[to_size(from)] += vertices;
+      sent[to_size(from)] += vertices;
     }
     const std::int64_t most = *std::max_element(part.begin(), part.end());
     load.solved += all;
@@ -136,14 +136,14 @@ SharedLoad share_out(std::span<const BandTiles> bands, std::span<const int> owne
     load.largest_part = std::max(load.largest_part, most);
     busiest += most;
     active += ranks - std::count(part.begin(), part.end(), 0);
-    told += *std::max_element(telling.begin(), telling.end());
+    sent_total += *std::max_element(sent.begin(), sent.end());
     messages += static_cast<std::int64_t>(pairs.size());
   }
   if (bands.empty()) return load;
   const auto count = static_cast<double>(bands.size());
   load.active = static_cast<double>(active) / count;
   load.messages = static_cast<double>(messages) / count;
-  load.halo = static_cast<double>(told) / count;
+  load.halo = static_cast<double>(sent_total) / count;
   load.balance = static_cast<double>(load.solved) / (static_cast<double>(busiest) * ranks);
   return load;
 }

@@ -13,7 +13,7 @@ namespace ahm::tiles {
 namespace {
 
 /// An edge within the tile; a and b are indices into the surroundings.
-struct Inner {
+struct InnerEdge {
   float bend;
   Index a, b;
   signed char turn;
@@ -28,7 +28,7 @@ signed char product(signed char a, signed char b) { return static_cast<signed ch
 TileTrees tile_trees(const AroundFile& around, std::span<const Index> tails, std::span<const Index> heads) {
   const Index n = around.end - around.begin;
   const auto& normals = around.planes.normals;
-  std::vector<Inner> inner;
+  std::vector<InnerEdge> inner;
   TileTrees result;
   std::vector<char> leads_out(static_cast<std::size_t>(n), 0);
   const auto add_joint = [&](float bend, Index tail, Index head, signed char turn, bool leaves) {
@@ -46,12 +46,12 @@ TileTrees tile_trees(const AroundFile& around, std::span<const Index> tails, std
     leads_out[(around.is_own(a) ? a : b) - around.begin] = 1;
     if (around.is_own(a)) add_joint(bend, a, b, turn, true);
   }
-  std::stable_sort(inner.begin(), inner.end(), [](const Inner& p, const Inner& q) { return p.bend < q.bend; });
+  std::stable_sort(inner.begin(), inner.end(), [](const InnerEdge& p, const InnerEdge& q) { return p.bend < q.bend; });
 
   pointcloud::SignedForest sets(n);  // points that are joined in the tree of the whole cloud
   detail::DisjointSets joined(static_cast<std::size_t>(n));
   std::vector<char> open = leads_out;  // whether a set has edges to other tiles, by its smallest member
-  for (const Inner& edge : inner) {
+  for (const InnerEdge& edge : inner) {
     const Index a = edge.a - around.begin, b = edge.b - around.begin;
     if (joined.root(a) == joined.root(b)) continue;
     joined.join(a, b);
@@ -193,11 +193,11 @@ struct TileSets {
 };
 
 /// Determines the signs of components from their points, in the order of the whole cloud.
-class Witnesses {
+class SignEvidence {
  public:
-  Witnesses(const TileFolder& folder, const OpenSets& sets) : sets_(sets), open_(sets.components()) {
-    for (std::size_t t = 0; t < folder.tiles(); ++t) each(TileSets(folder, t), open_, &Witnesses::count);
-    for (std::size_t t = 0; t < folder.tiles(); ++t) each(TileSets(folder, t), open_, &Witnesses::weigh);
+  SignEvidence(const TileFolder& folder, const OpenSets& sets) : sets_(sets), open_(sets.components()) {
+    for (std::size_t t = 0; t < folder.tiles(); ++t) each(TileSets(folder, t), open_, &SignEvidence::count);
+    for (std::size_t t = 0; t < folder.tiles(); ++t) each(TileSets(folder, t), open_, &SignEvidence::weigh);
   }
   /// The final sign of each point of a tile.
   std::vector<signed char> signs(const TileSets& tile) const {
@@ -258,7 +258,7 @@ std::int64_t reflections_within(const TileSets& tile, const std::vector<signed c
 /// Determines the signs of all normals, and numbers vertices and components in the order of the whole cloud.
 void orient(TileFolder& folder) {
   const OpenSets sets(folder);
-  const Witnesses witnesses(folder, sets);
+  const SignEvidence witnesses(folder, sets);
   Manifest& m = folder.manifest();
   m.reflections = sets.reflections();
   m.components = 0;

@@ -41,8 +41,9 @@ class RowLines {
   template <class Line>
   void add(const TiledGraph::TileRows& rows, const Line& line, const std::string& removed) {
     for (std::size_t i = 0; i + 1 < rows.begin.size(); ++i) {
-      const VertexLine told = line(i);
-      for (Index r = rows.begin[i]; r < rows.begin[i + 1]; ++r) add(rows.rows[static_cast<std::size_t>(r)], told);
+      const VertexLine vertex_line = line(i);
+      for (Index r = rows.begin[i]; r < rows.begin[i + 1]; ++r)
+        add(rows.rows[static_cast<std::size_t>(r)], vertex_line);
     }
     for (Index row : rows.removed) add(row, {removed});
   }

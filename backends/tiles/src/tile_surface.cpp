@@ -55,9 +55,9 @@ std::vector<Index> along_curve(const TangentGraph& graph) {
 }
 
 /// The tiles of a surface: the order of its vertices, and their distribution over tiles.
-class Cut {
+class SurfaceTiling {
  public:
-  Cut(const Surface& surface, Index tile_points)
+  SurfaceTiling(const Surface& surface, Index tile_points)
       : graph_(surface.graph()), rows_(rows_of(surface.rows(), graph_.size())), order_(along_curve(graph_)) {
     number_.resize(order_.size());
     for (std::size_t i = 0; i < order_.size(); ++i) number_[order_[i]] = static_cast<Index>(i);
@@ -127,7 +127,7 @@ class Cut {
   std::vector<std::size_t> first_;     ///< first position of each tile, and last the number of vertices
 };
 
-TileFacts facts_of(const Cut::Tile& tile) {
+TileFacts facts_of(const SurfaceTiling::Tile& tile) {
   std::vector<std::uint64_t> hashes;
   for (const NamedArray& one : tile.arrays()) hashes.push_back(checksum(one.bytes));
   const auto vertices = static_cast<Index>(tile.masses.size());
@@ -148,7 +148,7 @@ Manifest tile_surface(const Surface& surface, const std::string& input, const st
   const TangentGraph& graph = surface.graph();
   check_tile_points(tile_points);
   check_no_tiles(folder);
-  const Cut cut(surface, tile_points);
+  const SurfaceTiling cut(surface, tile_points);
   std::filesystem::create_directories(folder);
   Manifest m;
   m.input = input;
@@ -163,13 +163,13 @@ Manifest tile_surface(const Surface& surface, const std::string& input, const st
   m.is_delaunay = graph.is_delaunay();
   std::vector<Vec3> middles;
   for (std::size_t t = 0; t < cut.tiles(); ++t) {
-    const Cut::Tile tile = cut.tile(t);
+    const SurfaceTiling::Tile tile = cut.tile(t);
     m.tiles.push_back(facts_of(tile));
     middles.push_back(middle_of(tile.positions));
   }
   for (std::size_t t = 0; t < cut.tiles(); ++t) {  // second pass: each tile contains the identity of the whole graph
     progress.step("cut", static_cast<double>(t) / static_cast<double>(cut.tiles()));
-    const Cut::Tile tile = cut.tile(t);
+    const SurfaceTiling::Tile tile = cut.tile(t);
     const std::vector<std::uint64_t> identity = m.identity(t);
     std::vector<NamedArray> arrays = tile.arrays();
     arrays.push_back(array("identity", identity));

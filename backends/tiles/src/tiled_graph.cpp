@@ -66,7 +66,7 @@ std::size_t TiledGraph::tile_of(Index vertex) const {
 }
 
 /// Releases the least recently used tiles until half of the memory limit is free.
-void TiledGraph::give_back() const {
+void TiledGraph::release_memory() const {
   if (resident_file_bytes() <= memory_) return;
   std::vector<std::pair<std::int64_t, std::size_t>> order;
   for (std::size_t t = 0; t < tiles_.size(); ++t)
@@ -91,7 +91,7 @@ const TiledGraph::Tile& TiledGraph::tile(std::size_t number) const {
     tiles_[number] = std::move(mapped);
   }
   constexpr std::int64_t often = 8192;  // each call reads at most some hundred bytes
-  if (++clock_ % often == 0) give_back();
+  if (++clock_ % often == 0) release_memory();
   tiles_[number]->used = clock_;
   last_ = number;
   return *tiles_[number];

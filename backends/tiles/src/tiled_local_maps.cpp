@@ -134,7 +134,7 @@ void write_features(const std::filesystem::path& path, const std::vector<std::ui
     }
   }
   std::vector<NamedArray> arrays{array("identity", identity)};
-  for (const auto& feature : features) feature->put(arrays);
+  for (const auto& feature : features) feature->append_to(arrays);
   write_arrays(path, local_kind, arrays);
 }
 

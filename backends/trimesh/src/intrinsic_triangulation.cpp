@@ -99,10 +99,10 @@ namespace {
 constexpr double mollified_margin = 1e-8;
 
 /// Sides shorter than this fraction of the longest side of their face have no direction.
-constexpr double least_side = 1e-15;
+constexpr double min_side = 1e-15;
 
 /// Sines below this are rounding errors. Its inverse bounds cotangents.
-constexpr double least_sine = 1e-16;
+constexpr double min_sine = 1e-16;
 
 }  // namespace
 
@@ -152,7 +152,7 @@ double IntrinsicTriangulation::area(Index face) const {
 
 double IntrinsicTriangulation::cotangent(Half h) const {
   const Vec2 a = side_[previous(h)], b = -side_[next(h)];
-  return dot(a, b) / std::max(cross(a, b), least_sine * norm(a) * norm(b));
+  return dot(a, b) / std::max(cross(a, b), min_sine * norm(a) * norm(b));
 }
 
 double IntrinsicTriangulation::angle(Half h) const {
@@ -165,7 +165,7 @@ bool IntrinsicTriangulation::opposite_coincide(Half h) const {
   const double length = norm(side_[h]), along_h = -dot(side_[h], side_[previous(h)]) / length,
                along_t = -dot(side_[t], side_[previous(t)]) / norm(side_[t]);
   const bool mirrored = !mirrored_.empty() && mirrored_[h];
-  return std::abs(along_h - (mirrored ? along_t : length - along_t)) <= least_side * length;
+  return std::abs(along_h - (mirrored ? along_t : length - along_t)) <= min_side * length;
 }
 
 /// Whether the angles opposite the edge sum to at most pi, up to rounding, or a flip is impossible.
@@ -179,7 +179,7 @@ bool IntrinsicTriangulation::is_delaunay(Half h) const {
     return Vec2{dot(a, b) * scale, std::max(0.0, cross(a, b)) * scale};  // cosine, sine
   };
   const Vec2 p = opposite(h), q = opposite(t);
-  if (p[0] < 0 && q[0] < 0) return std::max(p[1], q[1]) < least_sine && opposite_coincide(h);
+  if (p[0] < 0 && q[0] < 0) return std::max(p[1], q[1]) < min_sine && opposite_coincide(h);
   return p[0] * q[1] + p[1] * q[0] >= -1e-15 - 1e-10 * p[1] * q[1];
 }
 
@@ -272,7 +272,7 @@ void IntrinsicTriangulation::flip(Half h) {
 std::vector<Index> IntrinsicTriangulation::thin_faces() const {
   std::vector<Index> faces;
   for (Index f = 0; f < static_cast<Index>(tail_.size() / 3); ++f)
-    if (!is_dropped(f) && !(relative_height(sides(f)) >= least_relative_height)) faces.push_back(f);
+    if (!is_dropped(f) && !(relative_height(sides(f)) >= min_relative_height)) faces.push_back(f);
   return faces;
 }
 
@@ -281,7 +281,7 @@ bool IntrinsicTriangulation::has_angles() const {
     if (is_dropped(f)) continue;
     const double l[3] = {norm(side_[3 * f]), norm(side_[3 * f + 1]), norm(side_[3 * f + 2])};
     const auto [least, largest] = std::minmax({l[0], l[1], l[2]});
-    if (!(least > least_side * largest)) return false;
+    if (!(least > min_side * largest)) return false;
   }
   return true;
 }

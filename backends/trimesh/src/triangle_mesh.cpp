@@ -19,9 +19,9 @@ namespace {
 
 /// Edges in space up to this many times the rounding of a coordinate are contracted. At longer edges, the angles around a flat
 /// vertex sum to 2 pi to 1e-8 in any plane, because this error is the square of the angle by which rounding rotates an edge.
-constexpr double least_edge_in_space = 8192;
+constexpr double min_edge_in_space = 8192;
 /// Edges of a mesh of edge lengths are contracted up to this fraction of the longest edge of their component.
-constexpr double least_edge_by_length = 1e-15;
+constexpr double min_edge_by_length = 1e-15;
 
 void check_lengths(std::span<const Triangle> faces, std::span<const std::array<double, 3>> lengths) {
   if (lengths.size() != faces.size())
@@ -68,7 +68,7 @@ TriangleMesh TriangleMesh::from_positions(std::span<const Vec3> positions, std::
   std::vector<std::uint8_t> contracted(edges.tail.size());
   for (Half h = 0; h < edges.size(); ++h) {
     const double length = norm(mesh.position_[edges.head(h)] - mesh.position_[edges.tail[h]]);
-    contracted[h] = length <= least_edge_in_space * mesh.rounding_[edges.tail[h]];
+    contracted[h] = length <= min_edge_in_space * mesh.rounding_[edges.tail[h]];
   }
   mesh.contract(std::move(contracted));
   return mesh;
@@ -133,12 +133,12 @@ TriangleMesh TriangleMesh::from_edge_lengths(Index vertices, std::span<const Tri
   const std::span<const Index> part = mesh.topology_.parts();
   std::vector<double> longest_of_part(part.size(), 0.0);
   for (std::size_t h = 0; h < mesh.length_.size(); ++h) {
-    double& known = longest_of_part[part[mesh.tails()[h]]];
-    known = std::max(known, mesh.length_[h]);
+    double& longest_here = longest_of_part[part[mesh.tails()[h]]];
+    longest_here = std::max(longest_here, mesh.length_[h]);
   }
   std::vector<std::uint8_t> contracted(mesh.length_.size());
   for (std::size_t h = 0; h < contracted.size(); ++h)
-    contracted[h] = mesh.length_[h] <= least_edge_by_length * longest_of_part[part[mesh.tails()[h]]];
+    contracted[h] = mesh.length_[h] <= min_edge_by_length * longest_of_part[part[mesh.tails()[h]]];
   mesh.contract(std::move(contracted));
   for (std::size_t h = 0; h < mesh.length_.size(); ++h)
     if (const Half t = mesh.twins()[h]; t > static_cast<Half>(h)) mesh.length_[t] = mesh.length_[h];

@@ -264,7 +264,7 @@ Sample TriangleMeshSurface::sample_in_face(const LogMap& map, const FacePoint& p
   return {phi[0], phi[1], Status::ok};
 }
 
-TriangleMeshSurface::Located TriangleMeshSurface::locate(const FacePoint& point) const {
+TriangleMeshSurface::IntrinsicPoint TriangleMeshSurface::locate(const FacePoint& point) const {
   check(point);
   const FlipHistory::Point p = impl_->locate(point);
   const auto tail = impl_->triangulation.half_edges().tail;

@@ -55,6 +55,6 @@ FaceLayout layout_of_lengths(double l0, double l1, double l2);
 double relative_height(const Vec2* sides);
 
 /// A face with a height below this fraction of its longest side is degenerate.
-constexpr double least_relative_height = 1e-10;
+constexpr double min_relative_height = 1e-10;
 
 }  // namespace ahm::trimesh

@@ -39,7 +39,7 @@ Reference find_reference(const TriangleMesh& mesh, const HalfEdges& input, const
 /// Assumed error of positions, in rounding errors of a coordinate: three coordinates after a few sums.
 constexpr double roundings = 8;
 /// Smaller total uncertainties are ignored. They cannot be distinguished from curvature, and cause errors of the same size.
-constexpr double least_uncertainty = 1e-10;
+constexpr double min_uncertainty = 1e-10;
 
 /// Angles of the faces of the intrinsic triangulation, per corner.
 using CornerAngles = detail::UnsetVector<double>;
@@ -66,8 +66,8 @@ class Fan {
 
   Corner start() const { return start_; }
 
-  /// The factor of all angles. Appends uncertain corners, which have their own factors instead, to `mended`.
-  double find_scale(double rounding, std::vector<std::pair<Half, double>>& mended) const {
+  /// The factor of all angles. Appends uncertain corners, which have their own factors instead, to `corrections`.
+  double find_scale(double rounding, std::vector<std::pair<Half, double>>& corrections) const {
     if (!closed_) return 1.0;
     double sum = 0, uncertainty = 0;
     for_each([&](Corner c) {
@@ -75,10 +75,10 @@ class Fan {
       uncertainty += uncertain(c, rounding);
     });
     const double lack = 2 * pi - sum;
-    if (!(uncertainty > least_uncertainty) || !(std::abs(lack) <= uncertainty)) return 2 * pi / sum;
+    if (!(uncertainty > min_uncertainty) || !(std::abs(lack) <= uncertainty)) return 2 * pi / sum;
     for_each([&](Corner c) {
       if (const double share = uncertain(c, rounding) / uncertainty * lack; share != 0)
-        mended.emplace_back(c.half, 1 + share / angles_[c.half]);
+        corrections.emplace_back(c.half, 1 + share / angles_[c.half]);
     });
     return 1.0;
   }
@@ -140,7 +140,7 @@ struct SpatialFan {
   std::vector<SpatialFace> faces;
   bool is_closed = false;
 
-  void look_around(const TriangleMesh& mesh, const HalfEdges& edges, Index v) {
+  void collect_faces(const TriangleMesh& mesh, const HalfEdges& edges, Index v) {
     faces.clear();
     const Corner start = reference_corner(mesh, edges, v);
     const Vec3& center = mesh.position(Vertex(v));
@@ -222,8 +222,8 @@ bool VertexFrames::forward(const HalfEdges& edges, Half side, bool from_tail) co
 }
 
 double VertexFrames::corner_scale(Half corner, Index vertex) const {
-  const auto at = std::lower_bound(mended.begin(), mended.end(), std::pair{corner, -HUGE_VAL});
-  return at != mended.end() && at->first == corner ? at->second : scale[vertex];
+  const auto at = std::lower_bound(corrections.begin(), corrections.end(), std::pair{corner, -HUGE_VAL});
+  return at != corrections.end() && at->first == corner ? at->second : scale[vertex];
 }
 
 VertexFrames find_frames(const TriangleMesh& mesh, const IntrinsicTriangulation& triangulation, unsigned threads) {
@@ -237,18 +237,18 @@ VertexFrames find_frames(const TriangleMesh& mesh, const IntrinsicTriangulation&
   if (!edges.mirrored.empty()) frames.sense.assign(directed, 0);
   std::vector<Reference> references(n);
   CornerAngles angles(static_cast<std::size_t>(edges.size()));
-  std::mutex mending;
+  std::mutex corrections_mutex;
   detail::for_each_index(n, threads, [&](std::size_t v) {
     references[v] = find_reference(mesh, input, triangulation, static_cast<Index>(v));
     const Fan fan(edges, triangulation, references[v].corner, angles);
-    std::vector<std::pair<Half, double>> mended;
+    std::vector<std::pair<Half, double>> corrections;
     frames.start[v] = fan.start();
-    frames.scale[v] = fan.find_scale(mesh.rounding(Vertex(static_cast<Index>(v))), mended);
-    if (mended.empty()) return;
-    const std::scoped_lock lock(mending);
-    frames.mended.insert(frames.mended.end(), mended.begin(), mended.end());
+    frames.scale[v] = fan.find_scale(mesh.rounding(Vertex(static_cast<Index>(v))), corrections);
+    if (corrections.empty()) return;
+    const std::scoped_lock lock(corrections_mutex);
+    frames.corrections.insert(frames.corrections.end(), corrections.begin(), corrections.end());
   });
-  std::sort(frames.mended.begin(), frames.mended.end());
+  std::sort(frames.corrections.begin(), frames.corrections.end());
   detail::for_each_index(
       n, threads, [&](std::size_t v) { set_angles(edges, angles, references[v], static_cast<Index>(v), frames); });
   return frames;
@@ -262,7 +262,7 @@ std::vector<Frame> frames_in_space(const TriangleMesh& mesh, unsigned threads) {
   detail::parallel_chunks(static_cast<Offset>(frames.size()), 1 << 12, threads, [&](Offset begin, Offset end) {
     SpatialFan fan;
     for (auto v = static_cast<Index>(begin); v < end; ++v) {
-      fan.look_around(mesh, edges, v);
+      fan.collect_faces(mesh, edges, v);
       frames[v] = frame_in_space(mesh, fan, v);
     }
   });
@@ -272,14 +272,14 @@ std::vector<Frame> frames_in_space(const TriangleMesh& mesh, unsigned threads) {
 namespace {
 
 /// Weights up to this are rounding errors (diagonals of cocircular quadrilaterals) and are set to 0.
-constexpr double least_weight = 1e-13;
+constexpr double min_weight = 1e-13;
 
 /// With larger weights the heat at both ends is equal to 1e-4 in any case, and the solver loses the digits that the sum of a
 /// row needs.
 constexpr double largest_weight = 1e4;
 
 /// Least weight of a sliver on the boundary; keeps vertices connected that have no other faces.
-constexpr double least_conductance = 1e-3;
+constexpr double min_conductance = 1e-3;
 
 class Rows {
  public:
@@ -309,7 +309,7 @@ class Rows {
     if (base < 0) return half_cotangents_[side];
     if (side == base) return 0;
     const Half third = detail::next(side) == base ? detail::previous(side) : detail::next(side);
-    return std::max(0.25 / half_cotangents_[third], least_conductance);
+    return std::max(0.25 / half_cotangents_[third], min_conductance);
   }
 
   /// The weight w_ij; 0 within rounding, so that squares and rectangles have no diagonals in the operators.
@@ -317,7 +317,7 @@ class Rows {
     const Half t = edges_.twin[side];
     double w = from_face(side) + (t >= 0 ? from_face(t) : 0);
     if (clamp_) w = std::clamp(w, 0.0, largest_weight);
-    return std::abs(w) > least_weight ? w : 0;
+    return std::abs(w) > min_weight ? w : 0;
   }
 
   /// Whether a side is an edge of the graph. An edge from a vertex to itself is left out. On a flat surface it contributes
@@ -373,7 +373,7 @@ class Rows {
       sum += triangulation_.length(h);
       lengths.add(edges_.tail[h], edges_.head(h), triangulation_.length(h));
       report.closed_edges += edges_.tail[h] == edges_.head(h);
-      report.clamped_weights += clamp_ && cotangents(h) < -least_weight;
+      report.clamped_weights += clamp_ && cotangents(h) < -min_weight;
       report.capped_weights += clamp_ && weight(h) >= largest_weight;
     }
     g.mean_edge_length = sum / static_cast<double>(report.edges);
@@ -412,7 +412,7 @@ class Rows {
 
 /// Vertices need a mass even if their faces have no area. A mass below 1e-14 of the square of the longest edge at the vertex
 /// becomes 1 % of that square.
-void mend_masses(const IntrinsicTriangulation& triangulation, std::vector<double>& masses) {
+void raise_masses(const IntrinsicTriangulation& triangulation, std::vector<double>& masses) {
   const HalfEdges edges = triangulation.half_edges();
   std::vector<double> longest(masses.size(), 0.0);
   for (Half h = 0; h < edges.size(); ++h) {
@@ -441,7 +441,7 @@ CsrGraphData mesh_edges(const TriangleMesh& mesh, const IntrinsicTriangulation& 
     const double third = std::max(0.0, triangulation.area(h / 3)) / 3.0;
     for (Half s = h; s < h + 3; ++s) g.masses[edges.tail[s]] += third;
   }
-  mend_masses(triangulation, g.masses);
+  raise_masses(triangulation, g.masses);
   g.row_begin.assign(n + 1, 0);
   detail::for_each_index(n, threads, [&](std::size_t i) {
     Offset degree = 0;

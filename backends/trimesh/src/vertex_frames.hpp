@@ -29,7 +29,7 @@ struct VertexFrames {
   std::vector<double> angle;  ///< per directed edge (HalfEdges::directed)
   std::vector<std::uint8_t>
       sense;  ///< per directed edge: whether the vertex is oriented like the lower of its faces; or empty
-  std::vector<std::pair<Half, double>> mended;  ///< uncertain corners, ascending, and factors of their angles
+  std::vector<std::pair<Half, double>> corrections;  ///< uncertain corners, ascending, and factors of their angles
 
   /// Whether the vertex at one end of a side is oriented like the face of the side.
   bool forward(const HalfEdges& edges, Half side, bool from_tail) const;

@@ -73,7 +73,7 @@ TEST_P(BaselineContract, IsSilentRatherThanWrongFarAway) {
 TEST_P(BaselineContract, TurnsWithTheSourceFrameAndNoOther) {
   for (const CsrGraphData& data : graphs()) {
     const Result result = solve(data, 7);
-    const Turned turned = with_frames_turned(data);
+    const TurnedGraph turned = with_frames_turned(data);
     const Result other = solve(turned.data, 7);
     const int d = data.dimension;
     const double tolerance = 1e-9 * largest(result.distance);
@@ -114,7 +114,7 @@ TEST_P(BaselineContract, DoesNotDependOnTheNumbering) {
     std::vector<Index> order(n);
     std::iota(order.begin(), order.end(), 0);
     std::shuffle(order.begin(), order.end(), std::mt19937(5));
-    const Result result = solve(data, 7), other = solve(relabelled(data, order), order[7]);
+    const Result result = solve(data, 7), other = solve(relabeled(data, order), order[7]);
     const double tolerance = 1e-9 * largest(result.distance);
     for (std::size_t i = 0; i < n; ++i) {
       const auto j = static_cast<std::size_t>(order[i]);

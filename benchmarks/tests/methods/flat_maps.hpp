@@ -19,7 +19,7 @@ inline Vec2 exact_log(const Mesh& mesh, const TangentGraph& graph, Index source,
 }
 
 /// Distance of a vertex from the sides of the unit square.
-inline double from_border(const Mesh& mesh, Index i) {
+inline double border_distance(const Mesh& mesh, Index i) {
   const auto& p = mesh.plane[i];
   return std::min({p[0], p[1], 1 - p[0], 1 - p[1]});
 }

@@ -90,12 +90,12 @@ class Regions {
     for (std::size_t v = 0; v < label.size(); ++v)
       for (Offset k = first[v]; k < end[v]; ++k) vertices_[next[of_vertex[k]]++] = Vertex(v);
     coordinates_.resize(2 * vertices_.size(), std::numeric_limits<double>::quiet_NaN());
-    known_.assign(sources, 0);
+    is_complete_.assign(sources, 0);
   }
 
   /// Copies coordinates from `before`, whose sources are the first ones here.
   /// @return the sources without coordinates for some vertex
-  std::vector<Index> adopt(const Regions& before) {
+  std::vector<Index> reuse(const Regions& before) {
     std::vector<Index> missing;
     for (std::size_t s = 0; s + 1 < begin_.size(); ++s) {
       bool complete = s + 1 < before.begin_.size();
@@ -106,7 +106,7 @@ class Regions {
           coordinates_[2 * at(k) + c] = before.coordinates_[2 * at(there) + c];
       }
       if (complete)
-        known_[s] = all_known(static_cast<Index>(s));
+        is_complete_[s] = has_all_coordinates(static_cast<Index>(s));
       else
         missing.push_back(static_cast<Index>(s));
     }
@@ -123,13 +123,13 @@ class Regions {
     for (Index source : sources) {
       const auto end = next + 2 * std::ssize(of(source));
       std::copy(next, end, coordinates_.begin() + 2 * begin_[source]);
-      known_[source] = all_known(source);
+      is_complete_[source] = has_all_coordinates(source);
       next = end;
     }
   }
 
   /// Whether all vertices in the region of a source have coordinates.
-  bool is_known(Index source) const { return known_[source] != 0; }
+  bool is_complete(Index source) const { return is_complete_[source] != 0; }
   /// (u, v) of a vertex from a source; NaN where unknown.
   std::array<double, 2> coordinates(Index source, Index vertex) const {
     const Offset k = find(at(source), Vertex(vertex));
@@ -145,7 +145,7 @@ class Regions {
     return found == last || *found != vertex ? -1 : found - vertices_.begin();
   }
 
-  bool all_known(Index source) const {
+  bool has_all_coordinates(Index source) const {
     return all_finite(
         std::span(coordinates_).subspan(2 * at(begin_[source]), 2 * at(begin_[source + 1] - begin_[source])));
   }
@@ -168,7 +168,7 @@ class Regions {
   std::vector<Offset> begin_{0};
   std::vector<Vertex> vertices_;
   std::vector<double> coordinates_;
-  std::vector<std::uint8_t> known_;  ///< for every source: all of its coordinates are finite
+  std::vector<std::uint8_t> is_complete_;  ///< for every source: all of its coordinates are finite
 };
 
 class AtlasMaker {
@@ -199,7 +199,7 @@ class AtlasMaker {
 
 namespace {
 
-constexpr Index nobody = -1;
+constexpr Index no_source = -1;
 
 void check(const TangentGraph& graph, const FaceList& faces) {
   if (graph.dimension() != 2)
@@ -227,20 +227,20 @@ double sum_of_distances(const Regions& regions, Index source, std::span<const In
 
 /// The cell C_i of the paper for every face: the source with the smallest sum of distances to its corners.
 std::vector<Index> nearest_of_faces(const FaceList& faces, std::span<const Index> label, const Regions& regions) {
-  std::vector<Index> result(faces.size(), nobody);
+  std::vector<Index> result(faces.size(), no_source);
   for (std::size_t f = 0; f < faces.size(); ++f) {
     double least = std::numeric_limits<double>::infinity();
-    Index before = nobody;
+    Index before = no_source;
     const auto face = faces[f];
-    if (const Index only = face.empty() ? nobody : label[face.front()];
-        only != nobody && regions.is_known(only) &&
+    if (const Index only = face.empty() ? no_source : label[face.front()];
+        only != no_source && regions.is_complete(only) &&
         std::ranges::all_of(face, [&](Index v) { return label[v] == only; })) {
       result[f] = only;
       continue;
     }
     for (Index v : face) {
       const Index source = label[v];
-      if (source == nobody || source == before) continue;
+      if (source == no_source || source == before) continue;
       const double sum = sum_of_distances(regions, before = source, face);
       if (sum < least || (sum == least && source < result[f])) least = sum, result[f] = source;
     }
@@ -251,10 +251,10 @@ std::vector<Index> nearest_of_faces(const FaceList& faces, std::span<const Index
 /// Connected pieces of faces with the same source.
 class Pieces {
  public:
-  Pieces(const FaceNeighbors& neighbors, std::span<const Index> source) : of_face(source.size(), nobody) {
+  Pieces(const FaceNeighbors& neighbors, std::span<const Index> source) : of_face(source.size(), no_source) {
     std::vector<Index> stack;
     for (std::size_t seed = 0; seed < source.size(); ++seed) {
-      if (source[seed] == nobody || of_face[seed] != nobody) continue;
+      if (source[seed] == no_source || of_face[seed] != no_source) continue;
       const auto piece = static_cast<Index>(faces.size());
       faces.emplace_back();
       of_face[seed] = piece;
@@ -264,17 +264,17 @@ class Pieces {
         stack.pop_back();
         faces.back().push_back(f);
         for (Index g : neighbors.of(f))
-          if (source[g] == source[seed] && of_face[g] == nobody) of_face[g] = piece, stack.push_back(g);
+          if (source[g] == source[seed] && of_face[g] == no_source) of_face[g] = piece, stack.push_back(g);
       }
     }
   }
 
-  /// The piece with the most faces of each source; `nobody` for a source without faces.
+  /// The piece with the most faces of each source; `no_source` for a source without faces.
   std::vector<Index> largest(std::span<const Index> source, std::size_t sources) const {
-    std::vector<Index> result(sources, nobody);
+    std::vector<Index> result(sources, no_source);
     for (std::size_t p = 0; p < faces.size(); ++p) {
       Index& best = result[source[faces[p].front()]];
-      if (best == nobody || faces[best].size() < faces[p].size()) best = static_cast<Index>(p);
+      if (best == no_source || faces[best].size() < faces[p].size()) best = static_cast<Index>(p);
     }
     return result;
   }
@@ -283,7 +283,7 @@ class Pieces {
   std::vector<std::vector<Index>> faces;
 };
 
-/// The neighboring source whose main piece shares most sides with `island` and whose map covers it; `nobody` if there is
+/// The neighboring source whose main piece shares most sides with `island` and whose map covers it; `no_source` if there is
 /// none.
 Index best_neighbor(const std::vector<Index>& island, const FaceNeighbors& neighbors, const FaceList& faces,
                     std::span<const Index> source, const std::vector<std::uint8_t>& in_main, const Regions& regions) {
@@ -292,13 +292,14 @@ Index best_neighbor(const std::vector<Index>& island, const FaceNeighbors& neigh
     for (Index g : neighbors.of(f))
       if (in_main[g] && source[g] != source[f]) candidates.push_back(source[g]);
   std::sort(candidates.begin(), candidates.end());
-  Index best = nobody;
+  Index best = no_source;
   std::ptrdiff_t most = 0;
   for (auto first = candidates.begin(); first != candidates.end();) {
     const auto last = std::upper_bound(first, candidates.end(), *first);
-    const bool known = std::all_of(island.begin(), island.end(),
-                                   [&](Index f) { return std::isfinite(sum_of_distances(regions, *first, faces[f])); });
-    if (known && last - first > most) most = last - first, best = *first;
+    const bool covers_island = std::all_of(island.begin(), island.end(), [&](Index f) {
+      return std::isfinite(sum_of_distances(regions, *first, faces[f]));
+    });
+    if (covers_island && last - first > most) most = last - first, best = *first;
     first = last;
   }
   return best;
@@ -314,11 +315,11 @@ Pieces attach_islands(const FaceNeighbors& neighbors, const FaceList& faces, con
     const std::vector<Index> main = pieces.largest(source, sources);
     std::vector<std::uint8_t> in_main(source.size(), 0);
     for (std::size_t f = 0; f < source.size(); ++f)
-      in_main[f] = source[f] != nobody && main[source[f]] == pieces.of_face[f];
+      in_main[f] = source[f] != no_source && main[source[f]] == pieces.of_face[f];
     for (const auto& piece : pieces.faces) {
       if (in_main[piece.front()]) continue;
       const Index better = best_neighbor(piece, neighbors, faces, source, in_main, regions);
-      if (better == nobody) continue;
+      if (better == no_source) continue;
       for (Index f : piece) source[f] = better;
       changed = true;
     }
@@ -356,7 +357,7 @@ std::vector<Chart> charts_of(Pieces pieces, std::span<const Index> source) {
 }
 
 /// Copies the coordinates of a chart's corners from its source.
-void put_corners(const FaceList& faces, const Regions& regions, const Chart& chart, Atlas& atlas) {
+void copy_corners(const FaceList& faces, const Regions& regions, const Chart& chart, Atlas& atlas) {
   for (Index f : chart.faces)
     for (Offset c = faces.begin[f]; c < faces.begin[f + 1]; ++c) {
       const auto q = regions.coordinates(chart.source, faces.vertices[c]);
@@ -375,7 +376,7 @@ void put_corners(const FaceList& faces, const Regions& regions, const Chart& cha
 AtlasMaker::AtlasMaker(const AnySolver& maps, const FaceList& faces)
     : maps_(maps), faces_(faces), neighbors_((check(maps.graph(), faces), FaceNeighbors(faces))) {
   if (maps.method() == Method::heat) front_.emplace(maps.graph(), Wavefront::one_rings(maps.graph()));
-  atlas_.chart_of_face.assign(faces.size(), nobody);
+  atlas_.chart_of_face.assign(faces.size(), no_source);
   atlas_.coordinates.assign(2 * faces.vertices.size(), std::numeric_limits<double>::quiet_NaN());
 }
 
@@ -387,7 +388,7 @@ VoronoiCells AtlasMaker::cells(std::span<const Vertex> sources) {
 std::vector<double> AtlasMaker::reach(const VoronoiCells& cells, std::size_t sources) const {
   std::vector<double> farthest(sources, 0);
   for (std::size_t v = 0; v < cells.labels.size(); ++v)
-    if (const Index s = cells.labels[v]; s != nobody) farthest[s] = std::max(farthest[s], cells.distances[v]);
+    if (const Index s = cells.labels[v]; s != no_source) farthest[s] = std::max(farthest[s], cells.distances[v]);
   const double across = maps_.longest_corner_distance(faces_);
   for (double& d : farthest) d = 1.001 * (d + across);
   return farthest;
@@ -398,12 +399,13 @@ void AtlasMaker::make(std::span<const Vertex> sources) {
   const std::vector<Index>& label = cells.labels;
   const std::vector<double> reach = this->reach(cells, sources.size());
   Regions regions(faces_, label, sources.size());
-  const std::vector<Index> missing = regions.adopt(regions_);
+  const std::vector<Index> missing = regions.reuse(regions_);
   std::vector<Vertex> starts;
   std::vector<double> far;
-  std::vector<std::span<const Vertex>> wanted;
-  for (Index s : missing) starts.push_back(sources[s]), far.push_back(reach[s]), wanted.push_back(regions.of(s));
-  regions.keep(missing, maps_.coordinates(starts, wanted, far));
+  std::vector<std::span<const Vertex>> missing_regions;
+  for (Index s : missing)
+    starts.push_back(sources[s]), far.push_back(reach[s]), missing_regions.push_back(regions.of(s));
+  regions.keep(missing, maps_.coordinates(starts, missing_regions, far));
   regions_ = std::move(regions);
   std::vector<Index> source = nearest_of_faces(faces_, label, regions_);
   Pieces pieces = attach_islands(neighbors_, faces_, regions_, sources.size(), source);
@@ -414,20 +416,20 @@ void AtlasMaker::make(std::span<const Vertex> sources) {
 /// Replaces the charts. The coordinates of unchanged charts are kept.
 /// @param remade  sources whose maps have changed, ascending
 void AtlasMaker::update(std::vector<Chart> charts, std::span<const Index> remade) {
-  const std::vector<Index> before = std::exchange(atlas_.chart_of_face, std::vector<Index>(faces_.size(), nobody));
+  const std::vector<Index> before = std::exchange(atlas_.chart_of_face, std::vector<Index>(faces_.size(), no_source));
   is_new_.assign(charts.size(), 1);
   for (std::size_t k = 0; k < charts.size(); ++k) {
     const Chart& chart = charts[k];
     for (Index f : chart.faces) atlas_.chart_of_face[f] = static_cast<Index>(k);
     const Index same = before[chart.faces.front()];
-    if (same != nobody && atlas_.charts[same].source == chart.source && atlas_.charts[same].faces == chart.faces &&
+    if (same != no_source && atlas_.charts[same].source == chart.source && atlas_.charts[same].faces == chart.faces &&
         !std::ranges::binary_search(remade, chart.source))
       is_new_[k] = 0;
     else
-      put_corners(faces_, regions_, chart, atlas_);
+      copy_corners(faces_, regions_, chart, atlas_);
   }
   for (std::size_t f = 0; f < faces_.size(); ++f)
-    if (atlas_.chart_of_face[f] == nobody && before[f] != nobody)
+    if (atlas_.chart_of_face[f] == no_source && before[f] != no_source)
       std::fill(atlas_.coordinates.begin() + 2 * faces_.begin[f], atlas_.coordinates.begin() + 2 * faces_.begin[f + 1],
                 std::numeric_limits<double>::quiet_NaN());
   atlas_.charts = std::move(charts);
@@ -465,7 +467,7 @@ ChartBox box_along(const std::vector<Vec2>& hull, double c, double s) {
 }
 
 /// The box of smallest area: one of its sides lies along a side of the convex hull [FS75].
-ChartBox least_box(const std::vector<Vec2>& hull) {
+ChartBox smallest_box(const std::vector<Vec2>& hull) {
   ChartBox best = box_along(hull, 1, 0);
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < hull.size(); ++k) {
@@ -499,7 +501,7 @@ std::vector<ChartBox> chart_boxes(const Atlas& atlas, const FaceList& faces) {
       for (const Vec2& p : points) size = std::max(size, largest(p));
       const double unit = power_of_two_below(size);
       for (Vec2& p : points) p = 1 / unit * p;
-      ChartBox box = least_box(convex_hull(std::move(points)));
+      ChartBox box = smallest_box(convex_hull(std::move(points)));
       box.low = unit * box.low, box.high = unit * box.high;
       boxes.push_back(box);
     }
@@ -518,11 +520,11 @@ void check(const Atlas& atlas, const FaceList& faces) {
 }
 
 /// Faces cut into fans of triangles, and the distortion of these triangles in the atlas.
-struct Fans {
+struct FaceFans {
   std::vector<std::array<Offset, 3>> corners;
   std::vector<TriangleDistortion> triangles;
 
-  Fans(const Atlas& atlas, const FaceList& faces, std::span<const Vec3> positions, std::span<const Index> numbers) {
+  FaceFans(const Atlas& atlas, const FaceList& faces, std::span<const Vec3> positions, std::span<const Index> numbers) {
     std::vector<std::array<Index, 3>> vertices;
     std::vector<double> coordinates;
     for (Index f : numbers)
@@ -541,7 +543,7 @@ struct Fans {
 /// The vertex that becomes another source in a chart; -1 where the chart is good or no vertex is left.
 Index vertex_to_add(const Atlas& atlas, const FaceList& faces, std::span<const Vec3> positions, const Chart& chart,
                     const std::vector<bool>& is_source, const RefineOptions& options) {
-  const Fans fans(atlas, faces, positions, chart.faces);
+  const FaceFans fans(atlas, faces, positions, chart.faces);
   const std::vector<double> areas = relative_areas(fans.triangles);
   double area = 0, bad_area = 0, farthest = -1;
   Index vertex = -1;
@@ -584,7 +586,7 @@ AtlasDistortion distortion(const Atlas& atlas, const FaceList& faces, std::span<
     AtlasDistortion result;
     std::vector<TriangleDistortion> all;
     const auto add = [&](std::span<const Index> numbers) {
-      const Fans fans(atlas, faces, positions, numbers);
+      const FaceFans fans(atlas, faces, positions, numbers);
       all.insert(all.end(), fans.triangles.begin(), fans.triangles.end());
       return summary(fans.triangles);
     };
@@ -621,15 +623,16 @@ Atlas make_atlas(const AnySolver& maps, std::span<const Vertex> sources, const F
     const Atlas& atlas = maker.atlas();
     std::vector<bool> is_source(positions.size(), false);
     for (Vertex vertex : atlas.sources) is_source[vertex.index] = true;
-    std::vector<bool> settled(faces.size(), false);  // indexed by the first face of a chart: it needs no other source
+    std::vector<bool> needs_no_source(faces.size(),
+                                      false);  // indexed by the first face of a chart: it needs no other source
     while (true) {
       std::vector<Vertex> more = atlas.sources;
       for (std::size_t k = 0; k < atlas.charts.size(); ++k) {
         if (more.size() >= refine.max_sources) break;
         const Chart& chart = atlas.charts[k];
-        if (!maker.is_new(k) && settled[chart.faces.front()]) continue;
+        if (!maker.is_new(k) && needs_no_source[chart.faces.front()]) continue;
         const Index vertex = vertex_to_add(atlas, faces, positions, chart, is_source, refine);
-        settled[chart.faces.front()] = vertex < 0;
+        needs_no_source[chart.faces.front()] = vertex < 0;
         if (vertex < 0 || is_source[vertex]) continue;  // two charts may choose the same corner
         is_source[vertex] = true;
         more.push_back(Vertex(vertex));

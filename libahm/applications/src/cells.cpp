@@ -16,13 +16,13 @@ namespace {
 
 void check_vertices(const TangentGraph& graph, std::span<const Vertex> vertices) {
   if (vertices.empty()) throw InvalidArgument("'vertices' is empty");
-  std::vector<bool> taken(static_cast<std::size_t>(graph.size()), false);
+  std::vector<bool> is_taken(static_cast<std::size_t>(graph.size()), false);
   for (const auto [vertex] : vertices) {
     if (vertex < 0 || vertex >= graph.size())
       throw InvalidArgument("vertex " + std::to_string(vertex) + " is outside [0, " + std::to_string(graph.size()) +
                             ")");
-    if (taken[vertex]) throw InvalidArgument("vertex " + std::to_string(vertex) + " occurs twice in 'vertices'");
-    taken[vertex] = true;
+    if (is_taken[vertex]) throw InvalidArgument("vertex " + std::to_string(vertex) + " occurs twice in 'vertices'");
+    is_taken[vertex] = true;
   }
 }
 
@@ -111,7 +111,7 @@ std::vector<Vertex> farthest_points(Wavefront& front, Vertex first, Index count,
   return detail::with_memory_check("choosing farthest points", [&] {
     if (front.points() > 0)
       throw InvalidArgument("'front' already has points (" + std::to_string(front.points()) + "); use a new front");
-    Farthest farthest(candidates(front.graph().size(), first, count, among));
+    FarthestQueue farthest(candidates(front.graph().size(), first, count, among));
     std::vector<Vertex> points{first};
     while (points.size() < static_cast<std::size_t>(count)) {
       progress.step("farthest points", static_cast<double>(points.size()) / count);
@@ -127,7 +127,7 @@ std::vector<Vertex> farthest_points(const ExactGeodesics& geodesics, Vertex firs
                                     const ExactMapOptions& options, std::span<const Vertex> among) {
   const exact::PolyhedralSurface& triangles = geodesics.triangles().surface;
   return detail::with_memory_check("choosing farthest points", [&] {
-    Farthest farthest(candidates(triangles.vertex_count(), first, count, among));
+    FarthestQueue farthest(candidates(triangles.vertex_count(), first, count, among));
     std::vector<Vertex> points{first};
     std::vector<double> distance(static_cast<std::size_t>(triangles.vertex_count()),
                                  std::numeric_limits<double>::infinity());

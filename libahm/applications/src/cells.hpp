@@ -2,7 +2,7 @@
 /// Finds the farthest vertex repeatedly, while distances shrink.
 ///
 /// \code
-/// ahm::Farthest farthest(vertices);
+/// ahm::FarthestQueue farthest(vertices);
 /// const ahm::Vertex vertex = farthest.of([&](ahm::Vertex v) { return front.distance(v); });
 /// \endcode
 #pragma once
@@ -18,10 +18,10 @@ namespace ahm {
 
 /// A heap of distances that may be outdated. A distance is updated only when its vertex is on top; if it has shrunk, the
 /// vertex moves down.
-class Farthest {
+class FarthestQueue {
  public:
   /// All distances start as infinity. @param vertices  in ascending order
-  explicit Farthest(std::span<const Vertex> vertices) {
+  explicit FarthestQueue(std::span<const Vertex> vertices) {
     heap_.reserve(vertices.size());
     for (const Vertex vertex : vertices) heap_.push_back({std::numeric_limits<double>::infinity(), vertex.index});
   }

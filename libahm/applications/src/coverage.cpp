@@ -17,7 +17,7 @@ namespace ahm {
 namespace {
 
 /// Removes the component of `v` along the unit vector `axis`.
-void remove(Vec3& v, const Vec3& axis) {
+void remove_component(Vec3& v, const Vec3& axis) {
   const double along = v[0] * axis[0] + v[1] * axis[1] + v[2] * axis[2];
   for (std::size_t c = 0; c < 3; ++c) v[c] -= along * axis[c];
 }
@@ -77,10 +77,10 @@ std::vector<Vec2> spiral(double spacing, double radius, double step) {
 }
 
 /// Maps planar lines to the surface, one after the other.
-class Carrier {
+class SurfaceMapper {
  public:
   /// @param geodesics  joins the points by shortest paths; null: straight lines
-  Carrier(const InverseMap& inverse, const CoverageOptions& options, const ExactGeodesics* geodesics)
+  SurfaceMapper(const InverseMap& inverse, const CoverageOptions& options, const ExactGeodesics* geodesics)
       : inverse_(inverse),
         geodesics_(geodesics),
         spacing_(options.spacing),
@@ -92,7 +92,7 @@ class Carrier {
     for (std::size_t k = 0; k < line.size(); ++k) {
       const Vec2 q{c_ * line[k][0] - s_ * line[k][1], s_ * line[k][0] + c_ * line[k][1]};
       auto point = inverse_.at(q[0], q[1]);
-      const SurfacePoint last = place_;
+      const SurfacePoint last = last_place_;
       if (point && geodesics_ != nullptr) place(*point);
       if (!point || (size() > 0 && !reaches(last, *point, q, inverse_.max_stretch() * length(q - before)))) end_piece();
       if (point) append(*point, q, number);
@@ -111,10 +111,10 @@ class Carrier {
   /// Finds the point on the surface. In polygons that are not flat, moves it to the triangles on which paths run.
   void place(InversePoint& point) {
     const Surface& surface = geodesics_->surface();
-    place_ = surface.closest_point(point.position).point;
-    const auto* inside = std::get_if<FacePoint>(&place_);
+    last_place_ = surface.closest_point(point.position).point;
+    const auto* inside = std::get_if<FacePoint>(&last_place_);
     if (inside != nullptr && surface.faces()[static_cast<std::size_t>(inside->face)].size() > 3)
-      point.position = geodesics_->position(geodesics_->point(place_));
+      point.position = geodesics_->position(geodesics_->point(last_place_));
   }
 
   /// Whether the path from the last point to this one is at most `most` long. Appends the points where it bends to the
@@ -123,7 +123,7 @@ class Carrier {
     if (distance(point) > most) return false;
     if (geodesics_ == nullptr) return true;
     const CoveragePoint last = path_.points.back();
-    const exact::GeodesicPath way = geodesics_->locally_shortest_path(from, place_);
+    const exact::GeodesicPath way = geodesics_->locally_shortest_path(from, last_place_);
     if (way.status != Status::ok || way.length > most) return false;
     const std::vector<Vec3> corners = bends(*geodesics_, way);
     double walked = 0;
@@ -166,7 +166,7 @@ class Carrier {
                         &to = path_.points[begin_ + std::min(k + 1, count - 1)];
     CoveragePoint& p = path_.points[begin_ + k];
     Vec3 chord = to.position - from.position;
-    remove(chord, p.normal);
+    remove_component(chord, p.normal);
     if (const double norm = length(chord); norm > 0)
       for (std::size_t c = 0; c < 3; ++c) p.heading[c] = chord[c] / norm;
 
@@ -179,7 +179,7 @@ class Carrier {
       if (!across) continue;
       Vec3 way = across->position - p.position;
       if (length(way) > inverse_.max_stretch() * spacing_) continue;  // another sheet
-      remove(way, p.heading);
+      remove_component(way, p.heading);
       p.spacing = length(way);
       break;
     }
@@ -188,37 +188,38 @@ class Carrier {
   const InverseMap& inverse_;
   const ExactGeodesics* geodesics_;
   double spacing_, c_, s_;
-  SurfacePoint place_ = Row{};  ///< last point of the pattern on the surface; used where paths join the points
+  SurfacePoint last_place_ = Row{};  ///< last point of the pattern on the surface; used where paths join the points
   CoveragePath path_;
   std::size_t begin_ = 0;
 };
 
-CoveragePath carry(const InverseMap& inverse, const CoverageOptions& options, const ExactGeodesics* geodesics) {
+CoveragePath map_to_surface(const InverseMap& inverse, const CoverageOptions& options,
+                            const ExactGeodesics* geodesics) {
   const double step = options.step > 0 ? options.step : options.spacing / 2;
-  Carrier carrier(inverse, options, geodesics);
+  SurfaceMapper mapper(inverse, options, geodesics);
   if (options.pattern == CoveragePattern::spiral) {
-    carrier.add(spiral(options.spacing, options.radius, step), 0);
-    return carrier.result();
+    mapper.add(spiral(options.spacing, options.radius, step), 0);
+    return mapper.result();
   }
   const auto outermost = static_cast<Index>(options.radius / options.spacing);
   for (Index k = -outermost; k <= outermost; ++k) {
     std::vector<Vec2> line = raster_line(k * options.spacing, options.radius, step);
     if ((k + outermost) % 2 == 1) std::reverse(line.begin(), line.end());
-    carrier.add(line, k + outermost);
+    mapper.add(line, k + outermost);
   }
-  return carrier.result();
+  return mapper.result();
 }
 
 }  // namespace
 
 CoveragePath coverage_path(const InverseMap& inverse, const CoverageOptions& options) {
   check(options);
-  return carry(inverse, options, nullptr);
+  return map_to_surface(inverse, options, nullptr);
 }
 
 CoveragePath coverage_path(const ExactGeodesics& geodesics, const InverseMap& inverse, const CoverageOptions& options) {
   check(options);
-  return carry(inverse, options, &geodesics);
+  return map_to_surface(inverse, options, &geodesics);
 }
 
 CoveragePath coverage_path(const Surface& surface, const InverseMap& inverse, const CoverageOptions& options) {

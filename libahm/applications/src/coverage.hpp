@@ -13,12 +13,12 @@
 namespace ahm {
 
 /// Position and unit direction of a curve at one of its points, in the plane of coordinates.
-struct PlanePlace {
+struct PlanePoint {
   Vec2 position, direction;
 };
 
 /// The place at arclength s of a curve of this length.
-inline PlanePlace place_in_plane(double s, double length, StrokeShape shape) {
+inline PlanePoint place_in_plane(double s, double length, StrokeShape shape) {
   if (shape == StrokeShape::line) return {{s, 0}, {1, 0}};
   const double radius = length / (2 * std::numbers::pi), c = std::cos(s / radius), d = std::sin(s / radius);
   return {{radius * c, radius * d}, {-d, c}};

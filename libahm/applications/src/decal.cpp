@@ -46,7 +46,7 @@ class Placement {
   }
 
   /// Image coordinates of (u, v), in [0, 1]^2 inside.
-  Vec2 in_image(const Vec2& q) const {
+  Vec2 to_image(const Vec2& q) const {
     const double x = (c_ * q[0] + s_ * q[1]) / options_.width, y = (c_ * q[1] - s_ * q[0]) / options_.height;
     return {0.5 + (options_.mirrored ? -x : x), 0.5 + y};
   }
@@ -55,7 +55,7 @@ class Placement {
   /// A linear function of (u, v) that is 0 on border `k` and positive inside it.
   double inside(std::size_t k, const Vec2& q) const {
     if (k >= 4) return 1 - circle_[k - 4][0] * q[0] - circle_[k - 4][1] * q[1];
-    const double x = in_image(q)[k / 2];
+    const double x = to_image(q)[k / 2];
     return k % 2 == 0 ? x : 1 - x;
   }
   bool is_inside(const Vec2& q) const {
@@ -75,7 +75,7 @@ Vec2 combine(const Weights& w, const std::array<Vec2, 3>& q) {
 }
 
 /// The part of a triangle inside the image, as a polygon of barycentric weights [SH74]; empty if there is none.
-std::vector<Weights> clipped(const Placement& image, const std::array<Vec2, 3>& q) {
+std::vector<Weights> clip(const Placement& image, const std::array<Vec2, 3>& q) {
   std::vector<Weights> polygon{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, kept;
   std::vector<double> inside;
   for (std::size_t k = 0; k < image.borders() && !polygon.empty(); ++k) {
@@ -97,7 +97,7 @@ std::vector<Weights> clipped(const Placement& image, const std::array<Vec2, 3>& 
 }
 
 /// Whether the inverse map returns a point of this sheet at the middle of the polygon.
-bool is_uppermost(const InverseMap& inverse, const Triangle& t, const std::vector<Weights>& polygon) {
+bool is_visible(const InverseMap& inverse, const Triangle& t, const std::vector<Weights>& polygon) {
   Weights middle{};
   for (const Weights& w : polygon)
     for (std::size_t c = 0; c < 3; ++c) middle[c] += w[c] / static_cast<double>(polygon.size());
@@ -118,7 +118,7 @@ bool is_uppermost(const InverseMap& inverse, const Triangle& t, const std::vecto
 }
 
 /// The triangles that are connected to the first one through shared vertices, in the same order.
-std::vector<Triangle> joined_to_first(const std::vector<Triangle>& triangles, std::size_t vertices) {
+std::vector<Triangle> connected_to_first(const std::vector<Triangle>& triangles, std::size_t vertices) {
   detail::DisjointSets parts(triangles.empty() ? 0 : vertices);
   for (const Triangle& t : triangles)
     for (std::size_t k : {1, 2}) parts.join(t[0], t[k]);
@@ -129,27 +129,27 @@ std::vector<Triangle> joined_to_first(const std::vector<Triangle>& triangles, st
 }
 
 /// The triangles that show a part of the image, nearest to the source first.
-struct Shown {
+struct VisibleTriangles {
   std::vector<Triangle> triangles;
   Index hidden = 0;
 
-  Shown(const InverseMap& inverse, const Placement& image) {
+  VisibleTriangles(const InverseMap& inverse, const Placement& image) {
     Index all = 0;
     for (const Triangle& t : inverse.triangles()) {
-      const std::vector<Weights> polygon = clipped(image, inverse.corners(t));
+      const std::vector<Weights> polygon = clip(image, inverse.corners(t));
       if (polygon.empty()) continue;
       ++all;
-      if (is_uppermost(inverse, t, polygon)) triangles.push_back(t);
+      if (is_visible(inverse, t, polygon)) triangles.push_back(t);
     }
-    triangles = joined_to_first(triangles, inverse.positions().size());
+    triangles = connected_to_first(triangles, inverse.positions().size());
     hidden = all - static_cast<Index>(triangles.size());
   }
 };
 
 /// Collects the pieces of a decal. They share those corners that are vertices of the surface.
-class Collector {
+class DecalBuilder {
  public:
-  Collector(const InverseMap& inverse, const Placement& image, double lift)
+  DecalBuilder(const InverseMap& inverse, const Placement& image, double lift)
       : inverse_(inverse), image_(image), lift_(lift), number_(inverse.positions().size(), -1) {
     decal_.face_begin.push_back(0);
   }
@@ -185,7 +185,7 @@ class Collector {
     }
     decal_.points.push_back(position);
     decal_.normals.push_back(normal);
-    for (double x : image_.in_image(combine(w, inverse_.corners(t))))
+    for (double x : image_.to_image(combine(w, inverse_.corners(t))))
       decal_.image_coordinates.push_back(std::clamp(x, 0.0, 1.0));  // removes rounding errors at the borders
     return static_cast<Index>(decal_.points.size()) - 1;
   }
@@ -218,11 +218,11 @@ Decal make_decal(const InverseMap& inverse, const DecalOptions& options) {
   check(options);
   return detail::with_memory_check("making a decal", [&] {
     const Placement image(options);
-    const Shown shown(inverse, image);
-    Collector collector(inverse, image, options.lift);
-    for (const Triangle& t : shown.triangles) collector.add(t, clipped(image, inverse.corners(t)));
-    Decal decal = collector.take();
-    decal.hidden = shown.hidden;
+    const VisibleTriangles visible(inverse, image);
+    DecalBuilder builder(inverse, image, options.lift);
+    for (const Triangle& t : visible.triangles) builder.add(t, clip(image, inverse.corners(t)));
+    Decal decal = builder.take();
+    decal.hidden = visible.hidden;
     return decal;
   });
 }
@@ -232,11 +232,11 @@ std::vector<double> image_coordinates_of_vertices(const InverseMap& inverse, con
   return detail::with_memory_check("making a decal", [&] {
     const Placement image(options);
     std::vector<double> result(2 * inverse.positions().size(), std::numeric_limits<double>::quiet_NaN());
-    for (const Triangle& t : Shown(inverse, image).triangles) {
+    for (const Triangle& t : VisibleTriangles(inverse, image).triangles) {
       const std::array<Vec2, 3> q = inverse.corners(t);
       for (std::size_t k = 0; k < 3; ++k) {
         if (!image.is_inside(q[k])) continue;
-        const Vec2 place = image.in_image(q[k]);
+        const Vec2 place = image.to_image(q[k]);
         std::copy(place.begin(), place.end(), result.begin() + 2 * t[k]);
       }
     }

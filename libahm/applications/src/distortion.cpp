@@ -14,9 +14,9 @@ namespace ahm {
 namespace {
 
 /// A triangle has no area if its area is below this share of the square of its longest side: then it is rounding error.
-constexpr double least_area = 1e-14;
+constexpr double min_relative_area = 1e-14;
 /// A triangle with a larger distortion counts as collapsed.
-constexpr double most_distortion = 1e6;
+constexpr double max_distortion = 1e6;
 
 /// (a - b) / unit for a power of two `unit`; does not overflow.
 template <std::size_t d>
@@ -24,7 +24,7 @@ std::array<double, d> scaled_difference(const std::array<double, d>& a, const st
   return 1 / unit * a - 1 / unit * b;
 }
 
-TriangleDistortion of_triangle(const std::array<Vec3, 3>& p, const std::array<Vec2, 3>& q) {
+TriangleDistortion distortion_of_triangle(const std::array<Vec3, 3>& p, const std::array<Vec2, 3>& q) {
   TriangleDistortion result;
   double size = 0;
   for (const Vec3& x : p) {
@@ -37,7 +37,7 @@ TriangleDistortion of_triangle(const std::array<Vec3, 3>& p, const std::array<Ve
 
   // The triangle in the plane: a = (base, 0), b = (along, height).
   const double base = length(a), along = base > 0 ? dot(a, b) / base : 0, twice_area = length(cross(a, b));
-  if (!(twice_area > least_area)) return result;
+  if (!(twice_area > min_relative_area)) return result;
   result.side = unit * std::sqrt(twice_area / 2);
   const double height = twice_area / base;
   if (!all_finite(q[0]) || !all_finite(q[1]) || !all_finite(q[2])) return result;
@@ -62,9 +62,9 @@ void check_length(const char* name, std::size_t size, std::size_t wanted) {
 
 /// @param place  place(triangle, corner): index of the first coordinate of a corner
 template <class Place>
-std::vector<TriangleDistortion> of_triangles(std::span<const Vec3> positions,
-                                             std::span<const std::array<Index, 3>> triangles,
-                                             std::span<const double> coordinates, const Place& place) {
+std::vector<TriangleDistortion> distortion_of_triangles(std::span<const Vec3> positions,
+                                                        std::span<const std::array<Index, 3>> triangles,
+                                                        std::span<const double> coordinates, const Place& place) {
   return detail::with_memory_check("measuring distortion", [&] {
     std::vector<TriangleDistortion> result(triangles.size());
     for (std::size_t t = 0; t < triangles.size(); ++t) {
@@ -78,7 +78,7 @@ std::vector<TriangleDistortion> of_triangles(std::span<const Vec3> positions,
         p[c] = positions[vertex];
         q[c] = {coordinates[place(t, c)], coordinates[place(t, c) + 1]};
       }
-      result[t] = of_triangle(p, q);
+      result[t] = distortion_of_triangle(p, q);
     }
     return result;
   });
@@ -95,16 +95,17 @@ std::vector<TriangleDistortion> distortion(std::span<const Vec3> positions,
                                            std::span<const std::array<Index, 3>> triangles,
                                            std::span<const double> coordinates) {
   check_length("coordinates", coordinates.size(), 2 * positions.size());
-  return of_triangles(positions, triangles, coordinates,
-                      [&](std::size_t t, std::size_t c) { return 2 * static_cast<std::size_t>(triangles[t][c]); });
+  return distortion_of_triangles(positions, triangles, coordinates, [&](std::size_t t, std::size_t c) {
+    return 2 * static_cast<std::size_t>(triangles[t][c]);
+  });
 }
 
 std::vector<TriangleDistortion> corner_distortion(std::span<const Vec3> positions,
                                                   std::span<const std::array<Index, 3>> triangles,
                                                   std::span<const double> corner_coordinates) {
   check_length("corner_coordinates", corner_coordinates.size(), 6 * triangles.size());
-  return of_triangles(positions, triangles, corner_coordinates,
-                      [](std::size_t t, std::size_t c) { return 6 * t + 2 * c; });
+  return distortion_of_triangles(positions, triangles, corner_coordinates,
+                                 [](std::size_t t, std::size_t c) { return 6 * t + 2 * c; });
 }
 
 std::vector<double> relative_areas(std::span<const TriangleDistortion> triangles) {
@@ -127,7 +128,7 @@ DistortionSummary summary(std::span<const TriangleDistortion> triangles) {
     if (std::isnan(value)) continue;
     sorted.emplace_back(value, areas[t]);
     area += areas[t];
-    value <= most_distortion ? sum += value * areas[t] : collapsed_area += areas[t];
+    value <= max_distortion ? sum += value * areas[t] : collapsed_area += areas[t];
     flipped += triangles[t].flipped;
     flipped_area += triangles[t].flipped ? areas[t] : 0;
   }

@@ -47,7 +47,7 @@ void check(const MappedSurface& s, const InverseMapOptions& options) {
 }
 
 /// Whether the triangle can be used: it has valid corners, keeps its orientation and is not stretched too much.
-bool is_sound(const MappedSurface& s, const Triangle& t, double max_stretch) {
+bool is_usable(const MappedSurface& s, const Triangle& t, double max_stretch) {
   std::array<Vec2, 3> q;
   for (std::size_t c = 0; c < 3; ++c) {
     q[c] = {s.coordinates[2 * to_size(t[c])], s.coordinates[2 * to_size(t[c]) + 1]};
@@ -100,7 +100,7 @@ std::vector<Index> nearest_to_origin(const MappedSurface& s, const std::vector<T
 }
 
 /// The sources that are corners of the triangles; the vertex nearest to the origin where there are none.
-std::vector<Index> starts(const MappedSurface& s, const std::vector<Triangle>& triangles) {
+std::vector<Index> start_vertices(const MappedSurface& s, const std::vector<Triangle>& triangles) {
   std::vector<bool> is_corner(s.positions.size());
   for (const Triangle& t : triangles)
     for (Index v : t) is_corner[v] = true;
@@ -111,18 +111,18 @@ std::vector<Index> starts(const MappedSurface& s, const std::vector<Triangle>& t
 
 /// The triangles that can be used, nearest to the source first.
 std::vector<Triangle> sorted_triangles(const MappedSurface& s, double max_stretch) {
-  std::vector<Triangle> sound;
+  std::vector<Triangle> usable;
   for (const Triangle& t : s.triangles)
-    if (is_sound(s, t, max_stretch)) sound.push_back(t);
-  const std::vector<double> distance = graph_distances(s, sound, starts(s, sound));
+    if (is_usable(s, t, max_stretch)) usable.push_back(t);
+  const std::vector<double> distance = graph_distances(s, usable, start_vertices(s, usable));
   std::vector<std::pair<double, std::size_t>> order;
-  for (std::size_t t = 0; t < sound.size(); ++t) {
-    const auto [a, b, c] = sound[t];
+  for (std::size_t t = 0; t < usable.size(); ++t) {
+    const auto [a, b, c] = usable[t];
     order.push_back({distance[a] + distance[b] + distance[c], t});
   }
   std::sort(order.begin(), order.end());
   std::vector<Triangle> result;
-  for (const auto& [d, t] : order) result.push_back(sound[t]);
+  for (const auto& [d, t] : order) result.push_back(usable[t]);
   return result;
 }
 
@@ -237,7 +237,7 @@ std::optional<InversePoint> InverseMap::in_triangle(const Triangle& t, const Vec
 namespace {
 
 /// The quality of each vertex; empty if no minimum is required. @throws InvalidArgument (a quality of other vertices)
-std::vector<double> quality_asked_for(const TangentGraph& graph, const LogMap& map, const InverseMapOptions& options) {
+std::vector<double> required_quality(const TangentGraph& graph, const LogMap& map, const InverseMapOptions& options) {
   if (!(options.min_quality > 0)) return {};
   if (options.quality.empty()) return map_quality(graph, map, options.threads);
   if (options.quality.size() != static_cast<std::size_t>(graph.size()))
@@ -286,7 +286,7 @@ InverseMap inverse_map(const TangentGraph& graph, const LogMap& map, const Inver
   const std::size_t n = normals.size();
   std::vector<Vec3> positions(n);
   std::vector<std::uint8_t> valid(n);
-  const std::vector<double> quality = quality_asked_for(graph, map, options);
+  const std::vector<double> quality = required_quality(graph, map, options);
   for (Index i = 0; i < graph.size(); ++i) {
     if (map.status(Vertex(i)) != Status::ok) continue;
     positions[i] = graph.frame(i)->origin;
@@ -305,7 +305,7 @@ InverseMap inverse_map(const Surface& surface, const LogMap& map, const InverseM
   const std::vector<Vec3> graph_normals = source_side_normals(graph, map);
   const RowLogMap rows = surface.to_rows(map);
   const std::size_t n = rows.vertex.size();
-  const std::vector<double> quality = quality_asked_for(graph, map, options);
+  const std::vector<double> quality = required_quality(graph, map, options);
   std::vector<Vec3> normals(n);
   std::vector<double> coordinates(2 * n);
   std::vector<std::uint8_t> valid(n);

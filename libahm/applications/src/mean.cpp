@@ -55,42 +55,42 @@ double sum_of_distances(const FlatPoints& points, const VectorXd& x) {
 }
 
 /// Derivatives of F(x) = sum w |z - x|. Points at x itself contribute to `weight` only.
-struct Slope {
+struct SumDerivatives {
   VectorXd pull;      ///< sum w u, with the unit vectors u towards the points: -grad F
   MatrixXd hessian;   ///< sum w / |z - x| (id - u u^T)
   double rate = 0;    ///< sum w / |z - x|, an upper bound of the eigenvalues of the Hessian
   double weight = 0;  ///< weight of the points at x
 
   /// x is a minimum if the pull of the other points is at most the weight of the points at x (Vardi & Zhang 2000).
-  bool is_least() const { return pull.norm() <= weight; }
+  bool is_minimum() const { return pull.norm() <= weight; }
 };
 
-Slope slope_at(const FlatPoints& points, const VectorXd& x) {
+SumDerivatives derivatives_at(const FlatPoints& points, const VectorXd& x) {
   const Eigen::Index d = x.size();
-  Slope slope{VectorXd::Zero(d), MatrixXd::Zero(d, d)};
+  SumDerivatives derivatives{VectorXd::Zero(d), MatrixXd::Zero(d, d)};
   VectorXd u(d);
   for (std::size_t k = 0; k < points.size(); ++k) {
     u = point(points, k) - x;
     const double r = u.norm(), w = points.weights[k];
     if (r == 0) {
-      slope.weight += w;
+      derivatives.weight += w;
       continue;
     }
     u /= r;
-    slope.pull += w * u;
-    slope.rate += w / r;
-    slope.hessian.diagonal().array() += w / r;
-    slope.hessian.noalias() -= w / r * u * u.transpose();
+    derivatives.pull += w * u;
+    derivatives.rate += w / r;
+    derivatives.hessian.diagonal().array() += w / r;
+    derivatives.hessian.noalias() -= w / r * u * u.transpose();
   }
-  return slope;
+  return derivatives;
 }
 
 /// The better of Newton's and Weiszfeld's step. Weiszfeld's always descends, also at points [VZ00]. Newton's may be worse
 /// by rounding.
-VectorXd step(const FlatPoints& points, const VectorXd& x, const Slope& slope) {
-  VectorXd weiszfeld = (1 - slope.weight / slope.pull.norm()) / slope.rate * slope.pull;
-  if (slope.weight > 0) return weiszfeld;
-  const VectorXd newton = slope.hessian.ldlt().solve(slope.pull);
+VectorXd step(const FlatPoints& points, const VectorXd& x, const SumDerivatives& derivatives) {
+  VectorXd weiszfeld = (1 - derivatives.weight / derivatives.pull.norm()) / derivatives.rate * derivatives.pull;
+  if (derivatives.weight > 0) return weiszfeld;
+  const VectorXd newton = derivatives.hessian.ldlt().solve(derivatives.pull);
   if (!newton.allFinite()) return weiszfeld;
   const double by_newton = sum_of_distances(points, x + newton), by_weiszfeld = sum_of_distances(points, x + weiszfeld);
   return by_newton <= by_weiszfeld * (1 + 1e-13) ? newton : weiszfeld;
@@ -126,13 +126,13 @@ std::vector<double> flat_median(const FlatPoints& points) {
   for (int pass = 0; pass < 1000; ++pass) {
     // The iteration slows down near a median that is one of the points, so the nearest point is tested directly.
     const VectorXd z = nearest_point(points, x);
-    if (slope_at(points, z).is_least()) {
+    if (derivatives_at(points, z).is_minimum()) {
       x = z;
       break;
     }
-    const Slope slope = slope_at(points, x);
-    if (slope.is_least()) break;
-    const VectorXd by = step(points, x, slope);
+    const SumDerivatives derivatives = derivatives_at(points, x);
+    if (derivatives.is_minimum()) break;
+    const VectorXd by = step(points, x, derivatives);
     x += by;
     if (by.norm() <= 2 * std::numeric_limits<double>::epsilon() * size) break;
   }
@@ -232,14 +232,14 @@ Vertex main_vertex(const Source& point) {
 }
 
 /// The points in the map from a vertex, and their center there; lengths in graph units.
-struct View {
+struct PointsInMap {
   LogMap map;
   FlatPoints points;
   std::vector<double> center;
 };
 
 /// @throws InvalidArgument if point k is not in the map
-void check_seen(const Problem& problem, const LogMap& map, Vertex from, std::size_t k) {
+void check_in_map(const Problem& problem, const LogMap& map, Vertex from, std::size_t k) {
   for (Vertex vertex : problem.points[k].vertices()) {
     const Status status = map.status(vertex);
     if (status == Status::ok) continue;
@@ -253,29 +253,29 @@ void check_seen(const Problem& problem, const LogMap& map, Vertex from, std::siz
 }
 
 /// The factor that scales phi to the length of the distance.
-double stretch(const LogMap& map, Vertex vertex) {
+double distance_factor(const LogMap& map, Vertex vertex) {
   const double size = length(map.coordinates(vertex));
   return size > 0 ? map.distance(vertex) / size : 1;
 }
 
 /// The factor at a point: the weighted mean of the factors of its vertices.
-double stretch(const LogMap& map, const Source& point) {
+double distance_factor(const LogMap& map, const Source& point) {
   double sum = 0, total = 0;
   for (std::size_t k = 0; k < point.vertices().size(); ++k) {
-    sum += point.weights()[k] * stretch(map, point.vertices()[k]);
+    sum += point.weights()[k] * distance_factor(map, point.vertices()[k]);
     total += point.weights()[k];
   }
   return sum / total;
 }
 
-View look(const Problem& problem, Vertex from, double radius) {
+PointsInMap map_points(const Problem& problem, Vertex from, double radius) {
   const TangentGraph& graph = problem.maps.graph();
-  View view{problem.maps.map(from, radius, problem.frames), {}, {}};
+  PointsInMap view{problem.maps.map(from, radius, problem.frames), {}, {}};
   view.points.dimension = static_cast<std::size_t>(graph.dimension());
   view.points.weights = problem.weights;
   for (std::size_t k = 0; k < problem.points.size(); ++k) {
-    check_seen(problem, view.map, from, k);
-    const double scale = stretch(view.map, problem.points[k]) / graph.length_unit();
+    check_in_map(problem, view.map, from, k);
+    const double scale = distance_factor(view.map, problem.points[k]) / graph.length_unit();
     for (double z : view.map.coordinates(problem.points[k])) view.points.coordinates.push_back(scale * z);
   }
   view.center = problem.flat_center(view.points);
@@ -284,10 +284,10 @@ View look(const Problem& problem, Vertex from, double radius) {
 
 /// exp of `share` times the center: the vertex with the nearest coordinates. The search walks from neighbor to neighbor,
 /// because beyond the cut locus other vertices have similar coordinates.
-Vertex follow(const TangentGraph& graph, const View& view, Vertex from, double share) {
+Vertex follow(const TangentGraph& graph, const PointsInMap& view, Vertex from, double share) {
   const auto away = [&](Index i) {
     const auto phi = view.map.coordinates(Vertex(i));
-    const double scale = stretch(view.map, Vertex(i)) / graph.length_unit();
+    const double scale = distance_factor(view.map, Vertex(i)) / graph.length_unit();
     double sum = 0;
     for (std::size_t a = 0; a < phi.size(); ++a) {
       const double difference = scale * phi[a] - share * view.center[a];
@@ -306,7 +306,7 @@ Vertex follow(const TangentGraph& graph, const View& view, Vertex from, double s
 }
 
 /// Weighted power mean of the distances from the center.
-double spread(const View& view, double power) {
+double spread(const PointsInMap& view, double power) {
   const std::vector<double> away = distances(view.points, view.center);
   double sum = 0, total = 0;
   for (std::size_t k = 0; k < away.size(); ++k) {
@@ -329,7 +329,7 @@ Center search(const Problem& problem, double power, const CenterOptions& options
   std::vector<Vertex> visited;
   double remaining = std::numeric_limits<double>::infinity(), share = 1;
   for (Index maps = 1; maps <= options.max_maps; ++maps) {
-    const View here = look(problem, x, options.radius);
+    const PointsInMap here = map_points(problem, x, options.radius);
     visited.push_back(x);
     if (const double r = length(here.center); r < remaining) {
       remaining = r;

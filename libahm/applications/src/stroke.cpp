@@ -13,12 +13,12 @@ namespace ahm {
 namespace {
 
 /// An edge of the path, as stored at vertex `from`.
-struct Step {
+struct PathEdge {
   Vec2 log;       ///< logarithm of the edge in the frame of `from`, world units
   bool mirrored;  ///< the frames of its two vertices have opposite orientations
 };
 
-Step step(const TangentGraph& graph, Vertex from, Vertex to) {
+PathEdge path_edge(const TangentGraph& graph, Vertex from, Vertex to) {
   const Star star = graph.star(from.index);
   const double unit = graph.length_unit();
   for (std::size_t e = 0; e < star.degree(); ++e) {
@@ -69,7 +69,7 @@ Curve follow(const TangentGraph& graph, std::span<const Vertex> path, bool close
   Curve curve{{}, {}, {}, std::vector<double>(n, 0.0), 0};
   Vec2 arriving{};
   if (closed) {
-    const Vec2 back = step(graph, path[0], path[n - 1]).log;
+    const Vec2 back = path_edge(graph, path[0], path[n - 1]).log;
     arriving = {-back[0], -back[1]};
   }
   double side = 1;
@@ -81,7 +81,7 @@ Curve follow(const TangentGraph& graph, std::span<const Vertex> path, bool close
       break;
     }
     const std::size_t next = (k + 1) % n;
-    const Step there = step(graph, path[k], path[next]), back = step(graph, path[next], path[k]);
+    const PathEdge there = path_edge(graph, path[k], path[next]), back = path_edge(graph, path[next], path[k]);
     curve.tangents.push_back(bisector(arriving, there.log, k));
     const double half = (length(there.log) + length(back.log)) / 4;
     curve.weights[k] += half;
@@ -208,7 +208,7 @@ std::vector<StrokePoint> stroke_points(std::span<const Source> points, std::span
   const double length = std::accumulate(lengths.begin(), lengths.end(), 0.0);
   double s = 0;
   return weighted_by_length(points, lengths, options.closed, [&](std::size_t k) {
-    const PlanePlace at = place_in_plane(s, length, options.shape);
+    const PlanePoint at = place_in_plane(s, length, options.shape);
     s += k < lengths.size() ? lengths[k] : 0;
     return at;
   });
@@ -219,7 +219,7 @@ std::vector<StrokePoint> stroke_points(std::span<const Source> points, std::span
   check_points(points, lengths, closed);
   const std::vector<Vec2> directions = directions_of(positions, points.size(), closed);
   return weighted_by_length(points, lengths, closed, [&](std::size_t k) {
-    return PlanePlace{positions[k], directions[k]};
+    return PlanePoint{positions[k], directions[k]};
   });
 }
 

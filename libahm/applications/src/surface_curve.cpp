@@ -71,10 +71,10 @@ std::vector<Vec3> bends(const ExactGeodesics& geodesics, const exact::GeodesicPa
 
 namespace {
 
-constexpr double most_points = 1e6;
+constexpr double max_points = 1e6;
 
 /// Mean length of the edges around a point, world units.
-double edge_at(const Surface& surface, const SurfacePoint& point) {
+double edge_length_at(const Surface& surface, const SurfacePoint& point) {
   return mean_edge(surface.graph(), surface.source(point).source.vertices());
 }
 
@@ -120,9 +120,9 @@ class Line {
 };
 
 /// Joins points by shortest paths: over flat faces or, on surfaces without faces, over tangent planes.
-class Joiner {
+class PathJoiner {
  public:
-  explicit Joiner(const Surface& surface)
+  explicit PathJoiner(const Surface& surface)
       : surface_(surface), over_planes_(surface.faces().size() == 0), faces_(surface), reason_(faces_.reason) {}
 
   /// Corners of the shortest path. Empty if the surface has no paths or does not connect the points; `reason` returns
@@ -160,14 +160,14 @@ double length_of(const std::vector<Vec3>& corners) {
   return length;
 }
 
-[[noreturn]] void refuse_length(double length, double edge) {
+[[noreturn]] void throw_too_long(double length, double edge) {
   throw InvalidArgument("curve_too_long",
-                        "the curve has length " + detail::number(length) + ", more than " +
-                            detail::number(most_points) + " times half an edge length of " + detail::number(edge),
+                        "the curve has length " + detail::number(length) + ", more than " + detail::number(max_points) +
+                            " times half an edge length of " + detail::number(edge),
                         "check that it is in the units of the surface");
 }
 
-[[noreturn]] void refuse_turn(const Vec3& p) {
+[[noreturn]] void throw_turns_back(const Vec3& p) {
   throw InvalidArgument(
       "curve_turns_back",
       "the curve turns back at " + detail::number(p[0]) + " " + detail::number(p[1]) + " " + detail::number(p[2]),
@@ -175,7 +175,7 @@ double length_of(const std::vector<Vec3>& corners) {
 }
 
 /// One line between input points, or several short lines that form one piece together.
-struct Stretch {
+struct CurveSection {
   std::vector<Vec3> corners;
   std::vector<std::size_t> lines;  ///< indices of the input points where its lines begin
   std::vector<double> ends;        ///< arclengths where its lines end
@@ -193,28 +193,28 @@ class CurveCutter {
         corners_.push_back(*in_space);
         ClosestPoint closest = project(*in_space);
         ends_.push_back(std::move(closest.point));
-        below_.push_back(closest.position);
+        end_positions_.push_back(closest.position);
       } else {
         ends_.push_back(std::get<SurfacePoint>(point));
-        below_.push_back(surface.position(ends_.back()));
-        corners_.push_back(below_.back());
+        end_positions_.push_back(surface.position(ends_.back()));
+        corners_.push_back(end_positions_.back());
       }
     }
     if (!closed || given.empty()) return;
     corners_.push_back(corners_.front());
     ends_.push_back(ends_.front());
-    below_.push_back(below_.front());
+    end_positions_.push_back(end_positions_.front());
   }
 
   std::vector<CurvePiece> cut() {
-    const double edge = ends_.empty() ? 0 : edge_at(surface_, ends_.front()), length = length_of(corners_);
-    if (!(length <= most_points * edge / 2)) refuse_length(length, edge);
-    least_ = 1e-6 * edge;
-    Stretch open;
+    const double edge = ends_.empty() ? 0 : edge_length_at(surface_, ends_.front()), length = length_of(corners_);
+    if (!(length <= max_points * edge / 2)) throw_too_long(length, edge);
+    min_distance_ = 1e-6 * edge;
+    CurveSection open;
     for (std::size_t k = 0; k + 1 < corners_.size(); ++k) {
-      if (!(distance(corners_[k], corners_[k + 1]) > least_)) continue;
-      const double there = edge_at(surface_, ends_[k]);
-      Stretch line = join(k, there);
+      if (!(distance(corners_[k], corners_[k + 1]) > min_distance_)) continue;
+      const double there = edge_length_at(surface_, ends_[k]);
+      CurveSection line = join(k, there);
       const double least = 0.75 * (there / 2);
       if (line.ends.back() < least) {
         append(line, open);
@@ -247,8 +247,8 @@ class CurveCutter {
   /// Joins an input point and the next one by a shortest path, or a locally shortest one if they are near; else by a
   /// straight line.
   /// @param edge  local edge length, world units
-  Stretch join(std::size_t k, double edge) {
-    Stretch line{{corners_[k], corners_[k + 1]}, {k}, {}, false};
+  CurveSection join(std::size_t k, double edge) {
+    CurveSection line{{corners_[k], corners_[k + 1]}, {k}, {}, false};
     const bool is_far = distance(corners_[k], corners_[k + 1]) > 2 * edge;
     if (std::vector<Vec3> path =
             is_far ? joiner_.path(ends_[k], ends_[k + 1]) : joiner_.short_path(ends_[k], ends_[k + 1]);
@@ -262,7 +262,7 @@ class CurveCutter {
     return line;
   }
 
-  static void append(const Stretch& line, Stretch& to) {
+  static void append(const CurveSection& line, CurveSection& to) {
     to.lines.push_back(line.lines.front());
     to.ends.push_back((to.ends.empty() ? 0 : to.ends.back()) + line.ends.back());
     to.corners.insert(to.corners.end(), line.corners.begin(), line.corners.end());
@@ -270,18 +270,18 @@ class CurveCutter {
 
   void check_turn(const Vec3& arriving, const Vec3& leaving, const Vec3& at) const {
     const Vec3 sum = arriving + leaving;
-    if (!(dot(sum, sum) > 1e-6)) refuse_turn(at);
+    if (!(dot(sum, sum) > 1e-6)) throw_turns_back(at);
   }
 
-  void cut(const Stretch& stretch) {
-    const Line line(stretch.corners);
-    if (!(line.length() > least_)) return;
-    if (last_) check_turn(*last_, line.at(0).leaving, corners_[stretch.lines.front()]);
+  void cut(const CurveSection& section) {
+    const Line line(section.corners);
+    if (!(line.length() > min_distance_)) return;
+    if (last_) check_turn(*last_, line.at(0).leaving, corners_[section.lines.front()]);
     if (!begin_) begin_ = line.at(0).leaving;
     last_ = line.at(line.length()).arriving;
-    if (stretch.lines.size() > 1) return add_short_lines(stretch, line);
+    if (section.lines.size() > 1) return add_short_lines(section, line);
     const auto on_surface = [&](double s) {
-      return stretch.is_path ? line.at(s).position : project(line.at(s).position).position;
+      return section.is_path ? line.at(s).position : project(line.at(s).position).position;
     };
     const std::vector<double> cuts = cuts_of(line);
     Vec3 from = on_surface(0);
@@ -289,33 +289,33 @@ class CurveCutter {
     for (std::size_t p = 1; p < cuts.size(); ++p) {
       const double begin = cuts[p - 1], end = cuts[p], middle = (begin + end) / 2;
       const Vec3 to = on_surface(end);
-      const double length = stretch.is_path ? end - begin : distance(from, to);
-      if (!(length > least_)) continue;
+      const double length = section.is_path ? end - begin : distance(from, to);
+      if (!(length > min_distance_)) continue;
       const auto [position, arriving, leaving] = line.at(middle);
       const double along = middle / line.length();
-      add_piece({project(position).point, arriving, leaving, stretch.lines.front(), along, length});
-      if (!stretch.is_path) add_point(to);
+      add_piece({project(position).point, arriving, leaving, section.lines.front(), along, length});
+      if (!section.is_path) add_point(to);
       from = to;
     }
-    if (stretch.is_path)
+    if (section.is_path)
       for (const Vec3& corner : line.corners()) add_point(corner);
   }
 
   /// Adds short lines as one piece, in the direction from their begin to their end.
-  void add_short_lines(const Stretch& stretch, const Line& line) {
+  void add_short_lines(const CurveSection& section, const Line& line) {
     double length = 0;
-    for (const std::size_t k : stretch.lines) {
-      length += distance(below_[k], below_[k + 1]);
-      add_point(below_[k]);
+    for (const std::size_t k : section.lines) {
+      length += distance(end_positions_[k], end_positions_[k + 1]);
+      add_point(end_positions_[k]);
     }
-    const Vec3 &from = below_[stretch.lines.front()], &to = below_[stretch.lines.back() + 1];
+    const Vec3 &from = end_positions_[section.lines.front()], &to = end_positions_[section.lines.back() + 1];
     add_point(to);
-    if (!(distance(from, to) > least_)) return;
+    if (!(distance(from, to) > min_distance_)) return;
     const double middle = line.length() / 2;
-    const auto own = std::ranges::lower_bound(stretch.ends, middle) - stretch.ends.begin();
-    const double begin = own > 0 ? stretch.ends[own - 1] : 0, along = (middle - begin) / (stretch.ends[own] - begin);
+    const auto own = std::ranges::lower_bound(section.ends, middle) - section.ends.begin();
+    const double begin = own > 0 ? section.ends[own - 1] : 0, along = (middle - begin) / (section.ends[own] - begin);
     const Vec3 direction = 1 / distance(from, to) * (to - from);
-    add_piece({project(line.at(middle).position).point, direction, direction, stretch.lines[own], along, length});
+    add_piece({project(line.at(middle).position).point, direction, direction, section.lines[own], along, length});
   }
 
   void add_piece(CurvePiece piece) {
@@ -330,8 +330,8 @@ class CurveCutter {
     const double length = line.length();
     std::vector<double> cuts{0};
     while (cuts.back() < length) {
-      const double edge = edge_at(surface_, surface_.closest_point(line.at(cuts.back()).position).point);
-      if (!(edge > 0) || static_cast<double>(pieces_.size() + cuts.size()) > most_points) refuse_length(length, edge);
+      const double edge = edge_length_at(surface_, surface_.closest_point(line.at(cuts.back()).position).point);
+      if (!(edge > 0) || static_cast<double>(pieces_.size() + cuts.size()) > max_points) throw_too_long(length, edge);
       cuts.push_back(cuts.back() + edge / 2);
     }
     // Of the last two cuts, the one nearer to the line's end becomes the end.
@@ -343,19 +343,19 @@ class CurveCutter {
   }
 
   void add_point(const Vec3& p) {
-    if (curve_.points.empty() || distance(curve_.points.back(), p) > least_) curve_.points.push_back(p);
+    if (curve_.points.empty() || distance(curve_.points.back(), p) > min_distance_) curve_.points.push_back(p);
   }
 
   const Surface& surface_;
   bool closed_;
   SurfaceCurve& curve_;
-  Joiner joiner_;
-  std::vector<Vec3> corners_;       ///< input points in space; a closed curve repeats the first
-  std::vector<SurfacePoint> ends_;  ///< the same points on the surface
-  std::vector<Vec3> below_;         ///< positions of `ends_`
+  PathJoiner joiner_;
+  std::vector<Vec3> corners_;        ///< input points in space; a closed curve repeats the first
+  std::vector<SurfacePoint> ends_;   ///< the same points on the surface
+  std::vector<Vec3> end_positions_;  ///< positions of `ends_`
   std::vector<CurvePiece> pieces_;
   std::optional<Vec3> begin_, last_;  ///< first direction of the curve, and last direction of its last line
-  double least_ = 0;                  ///< points nearer than this coincide, world units
+  double min_distance_ = 0;           ///< points nearer than this coincide, world units
 };
 
 }  // namespace
@@ -368,7 +368,7 @@ std::vector<CurvePiece> cut_curve(const Surface& surface, std::span<const CurveP
 namespace {
 
 /// Removes the normal component. On noisy points, a curve may run steeply.
-Vec3 flattened(const Vec3& along, const std::optional<Frame>& frame) {
+Vec3 tangential(const Vec3& along, const std::optional<Frame>& frame) {
   return frame ? dot(along, frame->x) * frame->x + dot(along, frame->y) * frame->y : along;
 }
 
@@ -392,7 +392,7 @@ Vec3 direction_at(const CurvePiece& piece, const std::optional<Frame>& frame) {
   if (!frame) return piece.leaving;
   const double arriving = std::abs(dot(piece.arriving, frame->normal)),
                leaving = std::abs(dot(piece.leaving, frame->normal));
-  return flattened(arriving < leaving ? piece.arriving : piece.leaving, frame);
+  return tangential(arriving < leaving ? piece.arriving : piece.leaving, frame);
 }
 
 /// @param place_of  place_of(piece, s, length): place of a piece's midpoint, at arclength s, in the plane of coordinates
@@ -405,7 +405,7 @@ SurfaceCurve draw(const Surface& surface, std::span<const CurvePoint> given, boo
   Vec3 normal{};
   double side = 1, s = 0;
   // Frames on opposite sides of the surface have opposite left sides.
-  const auto turn_over = [&](const std::optional<Frame>& frame) {
+  const auto update_side = [&](const std::optional<Frame>& frame) {
     if (may_mirror && frame && dot(frame->normal, normal) < 0) side = -side;
     if (frame) normal = frame->normal;
   };
@@ -413,14 +413,14 @@ SurfaceCurve draw(const Surface& surface, std::span<const CurvePoint> given, boo
     const Vec3 along = direction_at(piece, surface.source(piece.point).frame);
     const SurfaceSource point = surface.source(piece.point, along);
     if (stroke.empty()) curve.first = point.frame;
-    turn_over(point.frame);
+    update_side(point.frame);
     const auto [position, direction] = place_of(piece, s + piece.length / 2, curve.length);
     const double angle = std::atan2(direction[1], direction[0]);
     stroke.push_back({side < 0 ? mirrored(point.source) : point.source, piece.length, position, angle});
     curve.samples.push_back({piece.point, along, position, angle, side < 0});
     s += piece.length;
   }
-  if (closed) turn_over(curve.first);
+  if (closed) update_side(curve.first);
   if (side < 0 && closed)
     throw InvalidArgument("curve_one_sided", "the curve runs along a one-sided band, so its left side is undefined",
                           "use an open curve");
@@ -437,7 +437,7 @@ bool has_exact_coordinates(const SurfaceCurve& curve) {
 }
 
 /// Length of the longest of a piece and its two neighbors; the nearest point of the curve may be in any of them.
-double longest_about(const SurfaceCurve& curve, std::size_t piece) {
+double longest_nearby_piece(const SurfaceCurve& curve, std::size_t piece) {
   const std::size_t n = curve.pieces.size();
   const bool closed = curve.shape->closed;
   const double before = piece > 0 || closed ? curve.pieces[(piece + n - 1) % n] : 0,
@@ -469,7 +469,7 @@ SurfaceCurve draw_curve(const Surface& surface, std::span<const CurvePoint> give
   return draw(surface, given, closed, [&](const CurvePiece& piece, double, double) {
     const Vec2 &from = positions[piece.after], &to = positions[(piece.after + 1) % positions.size()];
     const Vec2 direction = to - from;
-    return PlanePlace{from + piece.along * direction, direction};
+    return PlanePoint{from + piece.along * direction, direction};
   });
 }
 
@@ -488,7 +488,7 @@ RowLogMap rows_from_curve(const Surface& surface, const LogMap& map, const Surfa
       const double from_samples = rows.distance[i], u = rows.u[i], v = rows.v[i];
       const Index nearest = map.nearest()[rows.vertex[i]->index];
       const Vec2& sample = curve.samples[nearest].position;
-      const double half = longest_about(curve, static_cast<std::size_t>(nearest)) / 2;
+      const double half = longest_nearby_piece(curve, static_cast<std::size_t>(nearest)) / 2;
       const bool is_beyond = !curve.shape->closed && !(u >= 0 && u <= curve.length);
       const double away = std::min(1.0, half / from_samples);
       const double least = is_beyond ? from_samples - half : from_samples * std::sqrt(1 - away * away);

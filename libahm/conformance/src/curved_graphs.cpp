@@ -16,13 +16,13 @@ namespace ahm::test {
 namespace {
 
 /// A unit vector perpendicular to a unit vector.
-Vec3 beside(const Vec3& p) {
+Vec3 perpendicular_to(const Vec3& p) {
   const double r = std::hypot(p[0], p[1]);
   return r > 1e-6 ? Vec3{-p[1] / r, p[0] / r, 0} : Vec3{0, -p[2], p[1]};
 }
 
 /// A vector rotated by the smallest rotation from unit vector `from` to unit vector `to`.
-Vec3 carried(const Vec3& from, const Vec3& to, const Vec3& vector) {
+Vec3 rotate_between(const Vec3& from, const Vec3& to, const Vec3& vector) {
   const Vec3 axis = cross(from, to), once = cross(axis, vector), twice = cross(axis, once);
   const double scale = 1 / (1 + dot(from, to));
   return {vector[0] + once[0] + scale * twice[0], vector[1] + once[1] + scale * twice[1],
@@ -33,7 +33,7 @@ Vec3 carried(const Vec3& from, const Vec3& to, const Vec3& vector) {
 /// is too far.
 std::vector<Index> nearest_by_z(const std::vector<Vec3>& points, Index i, std::size_t count) {
   std::vector<std::pair<double, Index>> found;
-  auto worth_it = [&](Index j) {
+  auto can_be_nearer = [&](Index j) {
     const double step = points[j][2] - points[i][2];
     return found.size() < count || step * step < found.back().first;
   };
@@ -43,8 +43,8 @@ std::vector<Index> nearest_by_z(const std::vector<Vec3>& points, Index i, std::s
                  {dot(offset, offset), j});
     if (found.size() > count) found.pop_back();
   };
-  for (Index j = i - 1; j >= 0 && worth_it(j); --j) add(j);
-  for (Index j = i + 1; j < static_cast<Index>(points.size()) && worth_it(j); ++j) add(j);
+  for (Index j = i - 1; j >= 0 && can_be_nearer(j); --j) add(j);
+  for (Index j = i + 1; j < static_cast<Index>(points.size()) && can_be_nearer(j); ++j) add(j);
   std::vector<Index> result;
   for (const auto& [distance, j] : found) result.push_back(j);
   return result;
@@ -64,7 +64,7 @@ CsrGraphData sphere_graph(Index n, unsigned seed) {
   const std::vector<Vec3> points = even_sphere(n).points;
   std::vector<Vec3> axis_x, axis_y;
   for (const Vec3& p : points) {
-    const Vec3 side = beside(p), other = cross(p, side);
+    const Vec3 side = perpendicular_to(p), other = cross(p, side);
     const double angle = 2.0 * std::numbers::pi * uniform(random), c = std::cos(angle), s = std::sin(angle);
     axis_x.push_back({c * side[0] + s * other[0], c * side[1] + s * other[1], c * side[2] + s * other[2]});
     axis_y.push_back(cross(p, axis_x.back()));
@@ -86,7 +86,7 @@ CsrGraphData sphere_graph(Index n, unsigned seed) {
       g.neighbors.push_back(j);
       g.weights.push_back(w);
       g.logs.insert(g.logs.end(), {dot(axis_x[i], offset), dot(axis_y[i], offset)});
-      const Vec3 axis = carried(points[j], points[i], axis_x[j]);
+      const Vec3 axis = rotate_between(points[j], points[i], axis_x[j]);
       const double c = dot(axis_x[i], axis), s = dot(axis_y[i], axis), r = std::hypot(c, s);
       g.transports.insert(g.transports.end(), {c / r, s / r});
     }

@@ -45,12 +45,12 @@ CsrGraphData joined(const CsrGraphData& g, const CsrGraphData& other) {
 
 CsrGraphData doubled(const CsrGraphData& g) { return joined(g, g); }
 
-Turned with_frames_turned(const CsrGraphData& g, unsigned seed) {
+TurnedGraph with_frames_turned(const CsrGraphData& g, unsigned seed) {
   const int d = g.dimension;
   const bool rotations = g.kind == TransportKind::rotation2;
   std::mt19937_64 random(seed);
   std::vector<Matrix> Q;
-  Turned turned{g, {}};
+  TurnedGraph turned{g, {}};
   for (std::size_t i = 0; i < g.masses.size(); ++i) {
     Q.push_back(random_frame(d, random, !rotations && i % 2 == 1));
     turned.turns.insert(turned.turns.end(), Q.back().begin(), Q.back().end());
@@ -86,7 +86,7 @@ CsrGraphData as_blocks(const CsrGraphData& g) {
   return blocks;
 }
 
-CsrGraphData relabelled(const CsrGraphData& g, const std::vector<Index>& order) {
+CsrGraphData relabeled(const CsrGraphData& g, const std::vector<Index>& order) {
   CsrGraphData result = g;
   std::vector<Index> inverse(order.size());
   for (std::size_t i = 0; i < order.size(); ++i) inverse[order[i]] = static_cast<Index>(i);

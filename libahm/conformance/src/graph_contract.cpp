@@ -50,15 +50,15 @@ std::vector<double> transport_block(const TangentGraph& graph, const Star& star,
 
 /// A point near vertex p, described by p and its neighbors with unequal weights. Their axes are the frame of p, transported
 /// along the edges.
-struct PointBeside {
+struct NearbyPoint {
   Source source;
   std::vector<double> offset;  ///< offset of the point from p, in the frame of p, world units
 };
 
-PointBeside point_beside(const TangentGraph& graph, Index p) {
+NearbyPoint nearby_point(const TangentGraph& graph, Index p) {
   const auto d = static_cast<std::size_t>(graph.dimension());
   const Star star = graph.star(p);
-  PointBeside point{Source(graph.dimension()), std::vector<double>(d, 0.0)};
+  NearbyPoint point{Source(graph.dimension()), std::vector<double>(d, 0.0)};
   const double total = 1.0 + static_cast<double>(star.degree() * (star.degree() + 1)) / 2;
   for (std::size_t e = 0; e < star.degree(); ++e)
     for (std::size_t a = 0; a < d; ++a) point.offset[a] += (e + 1) / total * star.log(e)[a] * graph.length_unit();
@@ -146,7 +146,7 @@ void carries_one_frame_where_it_is_flat(const TangentGraph& graph) {
 void starts_between_vertices_exactly_where_it_is_flat(const TangentGraph& graph) {
   const LogMapSolver solver(graph);
   const Index p = graph.size() / 3;
-  const PointBeside point = point_beside(graph, p);
+  const NearbyPoint point = nearby_point(graph, p);
   for (Variant variant : all_variants) {
     const LogMap from_vertex = solver.solve(Source::at_vertex(Vertex(p)), {.variant = variant}),
                  map = solver.solve(point.source, {.variant = variant});
@@ -174,7 +174,7 @@ void agrees_with_the_papers_full_operator(const TangentGraph& graph) {
 void does_not_depend_on_the_frames(const TangentGraph& original) {
   const CsrGraphData data = stored(original);
   const auto d = static_cast<std::size_t>(data.dimension);
-  const Turned turned = with_frames_turned(data);
+  const TurnedGraph turned = with_frames_turned(data);
   const CsrGraph graph(data), other(turned.data);
   const Index p = graph.size() / 3;
   const auto Q_p = std::span(turned.turns).subspan(static_cast<std::size_t>(p) * d * d, d * d);
@@ -194,7 +194,7 @@ void does_not_depend_on_the_numbering(const TangentGraph& original) {
   std::vector<Index> order(data.masses.size());
   std::iota(order.begin(), order.end(), 0);
   std::shuffle(order.begin(), order.end(), std::mt19937(3));
-  const CsrGraph graph(data), other(relabelled(data, order));
+  const CsrGraph graph(data), other(relabeled(data, order));
   for (Variant variant : all_variants) {
     const LogMap map = map_of(graph, Source::at_vertex(Vertex{3}), variant),
                  same = map_of(other, Source::at_vertex(Vertex(order[3])), variant);

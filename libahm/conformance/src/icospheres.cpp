@@ -11,7 +11,7 @@ namespace ahm::test {
 Mesh icosphere(Index parts) {
   const auto corner = icosahedron_corners();
   Mesh mesh;
-  std::map<std::array<long, 3>, Index> known;
+  std::map<std::array<long, 3>, Index> vertex_of_point;
   auto vertex = [&](const Triangle& t, Index i, Index j) {
     Vec3 p;
     for (int a = 0; a < 3; ++a)
@@ -19,7 +19,7 @@ Mesh icosphere(Index parts) {
     const double r = norm(p);
     for (double& x : p) x /= r;
     const std::array<long, 3> key{std::lround(p[0] * 1e9), std::lround(p[1] * 1e9), std::lround(p[2] * 1e9)};
-    const auto [at, added] = known.try_emplace(key, mesh.vertices());
+    const auto [at, added] = vertex_of_point.try_emplace(key, mesh.vertices());
     if (added) mesh.positions.push_back(p);
     return at->second;
   };

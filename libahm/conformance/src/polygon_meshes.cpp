@@ -20,7 +20,7 @@ struct CellCorner {
 };
 
 /// The part of a convex cell where a x + b y <= c. The new side has the number `line`.
-std::vector<CellCorner> clipped(const std::vector<CellCorner>& cell, double a, double b, double c, Index line) {
+std::vector<CellCorner> clip(const std::vector<CellCorner>& cell, double a, double b, double c, Index line) {
   std::vector<CellCorner> result;
   for (std::size_t k = 0; k < cell.size(); ++k) {
     const CellCorner &p = cell[k], &q = cell[(k + 1) % cell.size()];
@@ -103,7 +103,7 @@ Polygons voronoi_square(Index cells, unsigned seed) {
       if (o == s) continue;
       const double a = site[o][0] - site[s][0], b = site[o][1] - site[s][1];
       const double c = 0.5 * (a * (site[o][0] + site[s][0]) + b * (site[o][1] + site[s][1]));
-      cell = clipped(cell, a, b, c, o);
+      cell = clip(cell, a, b, c, o);
     }
     numbers.add(s, cell, [](const CellCorner& p) { return Vec3{p.x, p.y, 0}; });
   }
@@ -237,7 +237,7 @@ Polygons voronoi_sphere(Index cells, unsigned seed) {
     for (Index o = 0; o < cells; ++o) {
       if (o == s || dot(minus(site[o], p), minus(site[o], p)) > reach * reach) continue;
       const Vec3 d = minus(site[o], p);
-      cell = clipped(cell, dot(d, x), dot(d, y), -dot(d, p), o);
+      cell = clip(cell, dot(d, x), dot(d, y), -dot(d, p), o);
     }
     numbers.add(s, cell, [&](const CellCorner& c) {
       return unit({p[0] + c.x * x[0] + c.y * y[0], p[1] + c.x * x[1] + c.y * y[1], p[2] + c.x * x[2] + c.y * y[2]});

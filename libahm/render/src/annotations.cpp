@@ -21,8 +21,8 @@ double distance_to_line(const Vector2d& p, const Vector2d& a, const Vector2d& b)
 
 double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-// Strokes of a letter: points on a grid 4 wide and 6 high (y up from the base line), a stroke ends with '/'.
-// Curves are given by enough points to look round at the sizes used.
+// Strokes of the letters: points on a grid 4 wide and 6 high (y up from the baseline); '/' ends a stroke. Polylines with enough points
+// look like curves at the sizes used.
 constexpr std::string_view letters = "0123456789.-+euv";
 constexpr std::array<std::string_view, letters.size()> strokes = {
     "20 11 02 04 15 26 35 44 42 31 20",           // 0
@@ -45,7 +45,7 @@ constexpr std::array<std::string_view, letters.size()> strokes = {
 
 }  // namespace
 
-/// Paints where the signed distance is negative, with half a pixel of soft edge.
+/// Fills the region of negative signed distance; the edge is antialiased over half a pixel on each side.
 template <class PaintAt, class Distance>
 void Pen::fill(Vector2d low, Vector2d high, const PaintAt& color_at, const Distance& distance) {
   const auto clip = [](double x, int size) { return static_cast<int>(std::clamp(x, 0.0, static_cast<double>(size))); };
@@ -156,7 +156,7 @@ class Wheel {
   }
 
  private:
-  /// The width of one ring below the wheel: |--| 0.05
+  /// Draws the width of a ring below the wheel, as |--| 0.05
   void draw_scale(double ring_width) {
     const double y = center_.y() + radius_ + 16 * unit_, tick = 5 * unit_;
     const double left = center_.x() - radius_, right = left + radius_ / wheel_rings;
@@ -184,7 +184,7 @@ class Wheel {
   Vector2d center_;
 };
 
-/// The bar, with about five numbers at its ring lines.
+/// Draws the color bar, with at most seven numbers at ring lines.
 void draw_bar(Image& image, const Material& material, double ring_width) {
   const double unit = std::min(image.width, image.height) / 1200.0, rings = material.rings;
   const double left = 40 * unit, width = 26 * unit, height = 300 * unit, bottom = image.height - 50 * unit;
@@ -218,8 +218,8 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// Of the scene's size: a polyline dips into what bulges. The discs around a point of a coarse or noisy cloud may stand twice
-// as far before it as they are apart; surfaces nearer to each other than that are one to clouds.
+// Tolerances of the depth test, relative to the scene's size. A polyline cuts through a convex surface. In coarse or noisy clouds, discs
+// around a point may be in front of it by twice their spacing; sheets closer than that cannot be distinguished.
 constexpr double curve_tolerance = 0.02, cloud_tolerance = 0.06;
 
 double dot_tolerance(const Scene& scene, double spacing) {
@@ -230,7 +230,7 @@ double dot_tolerance(const Scene& scene, double spacing) {
 void draw_arrow(Pen& pen, const Arrow& arrow, double grow, Color color) {
   const Vector2d d = arrow.to - arrow.from;
   const double length = d.norm();
-  if (length < 3 * arrow.width) return;  // seen end on
+  if (length < 3 * arrow.width) return;  // points along the line of sight
   const Vector2d along = d / length, across(-along.y(), along.x());
   const double head = std::min(4.5 * arrow.width, 0.6 * length);
   const Vector2d neck = arrow.to - head * along;
@@ -272,9 +272,9 @@ class Marks {
  private:
   Vector2d pixel(const Vector3d& place) const { return camera_.to_pixels(place, film_.width, film_.height).head<2>(); }
 
-  /// In pieces short enough that each is seen or hidden on the whole.
+  /// Draws the curve in short pieces; each is either drawn or hidden.
   void draw_curve() {
-    std::vector<Vector2d> pixels;  // two per visible piece
+    std::vector<Vector2d> pixels;  // two ends per visible piece
     for (std::size_t k = 0; k + 1 < scene_.curve.size(); ++k) {
       const auto& pieces = scene_.curve_pieces;
       if (std::binary_search(pieces.begin(), pieces.end(), static_cast<Index>(k + 1))) continue;
@@ -312,7 +312,7 @@ class Marks {
   const Scene& scene_;
   const Camera& camera_;
   Pen pen_;
-  double unit_;  ///< marks keep their share of the picture
+  double unit_;  ///< marks are scaled with the picture
   double dot_tolerance_;
 };
 

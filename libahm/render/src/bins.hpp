@@ -1,4 +1,4 @@
-// Which primitives may touch which tile of the picture.
+// Assignment of primitives to the tiles of the picture.
 #pragma once
 
 #include <algorithm>
@@ -8,12 +8,12 @@
 
 namespace ahm::render {
 
-/// Samples, half open.
+/// A box of samples, half open.
 struct Box {
   float left = 0, top = 0, right = 0, bottom = 0;
 };
 
-/// Squares of samples, the picture's parts that are drawn by themselves.
+/// Tiles of the picture: squares of samples that are drawn independently.
 struct Tiles {
   static constexpr int side = 64;
   int columns, rows;
@@ -22,10 +22,10 @@ struct Tiles {
   int count() const { return columns * rows; }
 };
 
-/// For every tile the numbers of its primitives, ascending.
+/// The primitives of every tile, ascending: those with a bounding box that overlaps the tile.
 class Bins {
  public:
-  /// @param box_of  (primitive, Box&) -> whether it is before the camera
+  /// @param box_of  box_of(primitive, Box&) computes the bounding box; false if the primitive is behind the camera
   template <class BoxOf>
   Bins(const Tiles& tiles, std::size_t primitives, const BoxOf& box_of) : begin_(tiles.count() + 1, 0) {
     const auto for_each_tile = [&](std::size_t primitive, const auto& body) {

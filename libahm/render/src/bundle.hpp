@@ -1,4 +1,4 @@
-// Numbers in arrays behind a JSON text that tells of them (page.hpp).
+// Bundles: a JSON text followed by the arrays that it describes (page.hpp).
 #pragma once
 
 #include <bit>
@@ -14,13 +14,13 @@ static_assert(std::endian::native == std::endian::little, "bundles are little-en
 
 class Bundle {
  public:
-  /// Elements that consist of numbers of one type.
+  /// Adds an array. Its elements consist of numbers of one type.
   template <class Number, class Element>
   void add(const char* name, const std::vector<Element>& values) {
     static_assert(sizeof(Element) % sizeof(Number) == 0);
     add(name, type<Number>(), values.data(), values.size() * sizeof(Element), sizeof(Number));
   }
-  /// @param meta  an object
+  /// The bundle. @param meta  JSON object
   std::string finish(nlohmann::json meta) &&;
 
  private:

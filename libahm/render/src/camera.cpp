@@ -14,8 +14,8 @@ using Eigen::Vector3d;
 
 constexpr std::size_t framing_sample = 200'000;
 
-/// At most about `framing_sample` of the points that decide the framing: the mapped ones if there are any.
-/// All vertices of a mesh that is mapped for the most part: its rest belongs into the picture.
+/// A sample of about `framing_sample` points that determine the framing: the mapped points, or all points if none is mapped. Also all
+/// points of a mesh that is mostly mapped, to show the whole mesh.
 std::vector<Index> framed_points(const Scene& scene, const std::vector<Index>& shown, bool& is_local) {
   std::vector<Index> mapped;
   std::copy_if(shown.begin(), shown.end(), std::back_inserter(mapped),
@@ -33,8 +33,7 @@ struct Range {
   double low, high;
 };
 
-/// Smallest and largest value; without the outer percent on a side where that percent lies far out (floaters of a
-/// scan).
+/// Smallest and largest value. On a side where the outer percent of the values is far away (outliers of a scan), limits the range.
 Range robust_range(std::vector<double> values) {
   const auto quantile = [&](double q) {
     return detail::value_at(values, static_cast<std::size_t>(std::lround(q * static_cast<double>(values.size() - 1))));
@@ -58,8 +57,8 @@ Eigen::AlignedBox3d robust_box(const Scene& scene, const std::vector<Index>& poi
   return {low, high};
 }
 
-/// z for what is flat in z (terrain, rooms) and for scans that stand in it (trees, masts), y else. A figure with spread arms is
-/// flat in z too, hence more care with meshes.
+/// z for objects that are flat in z (terrain, rooms) and for scans that are tall in z (trees, masts), else y. The threshold is stricter
+/// for meshes, because a figure with spread arms is flat in z, too.
 Vector3d default_up(const Vector3d& extent, bool is_mesh) {
   const double flat = is_mesh ? 0.3 : 0.6, wide = std::max(extent.x(), extent.y());
   const bool lies = extent.z() < flat * std::min(extent.x(), extent.y()), stands = !is_mesh && extent.z() > 3 * wide;
@@ -69,7 +68,7 @@ Vector3d default_up(const Vector3d& extent, bool is_mesh) {
 void orient(Camera& camera, const Vector3d& direction, const Vector3d& up) {
   camera.back = direction.normalized();
   Vector3d right = up.cross(camera.back);
-  if (right.norm() < 1e-6 * up.norm())  // seen along `up`, a map lies as on paper: x to the right
+  if (right.norm() < 1e-6 * up.norm())  // the view is along `up`: x to the right, as on paper
     right = Vector3d(std::abs(camera.back.y()) < 0.9 ? Vector3d(0, 1, 0) : Vector3d(0, 0, -1)).cross(camera.back);
   camera.right = right.normalized();
   camera.up = camera.back.cross(camera.right);
@@ -81,7 +80,7 @@ void fit(Camera& camera, const std::vector<Vector3d>& points, const Eigen::Align
   const double tan_y = std::tan(Camera::field_of_view / 2), tan_x = tan_y * aspect;
   Vector3d center = box.center();
   double distance = 0;
-  for (int round = 0; round < 4; ++round) {  // recentring changes the perspective a little, hence the rounds
+  for (int round = 0; round < 4; ++round) {  // iterate, because recentering changes the perspective
     distance = 1e-3;
     for (const Vector3d& p : points) {
       const Vector3d q = p - center;

@@ -1,4 +1,4 @@
-// The camera in single precision, for one size of picture.
+// The camera, and its projection in single precision for one picture size.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,13 +9,13 @@
 
 namespace ahm::render {
 
-/// Eigen's view of a position; the scene outlives it.
+/// A position as an Eigen vector, without a copy.
 inline Eigen::Map<const Eigen::Vector3d> as_vector(const Vec3& x) {
   return Eigen::Map<const Eigen::Vector3d>(x.data());
 }
 
-/// The picture's own coordinates, x -> (x - center) / scale, and a perspective camera in them.
-/// Center and scale are taken off in double precision: a scan in UTM coordinates must not tremble in float.
+/// Scene coordinates, x -> (x - center) / scale, and a perspective camera in these coordinates. The conversion is in double precision,
+/// because floats cannot represent a scan in UTM coordinates accurately.
 struct Camera {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
   double scale = 1;
@@ -25,35 +25,34 @@ struct Camera {
   double distance = 1;              ///< from the eye to the target
   double near_plane = 0.01, far_plane = 100;
 
-  static constexpr double field_of_view = 0.5;  ///< vertical, in radians: long enough a lens to keep proportions
+  static constexpr double field_of_view = 0.5;  ///< vertical, radians; small enough to preserve proportions
 
   Eigen::Vector3d eye() const { return target + distance * back; }
   Eigen::Vector3d to_scene(const Vec3& x) const { return (as_vector(x) - center) / scale; }
   /// Camera coordinates: x to the right, y up, z towards the viewer, origin at the eye.
   Eigen::Vector3d to_view(const Eigen::Vector3d& x) const;
-  /// Pixel position (y down) and size in pixels of one unit at that depth.
+  /// Pixel position (y down), and the size of one unit at that depth, pixels.
   Eigen::Vector3d to_pixels(const Eigen::Vector3d& x, int width, int height) const;
 };
 
-/// The points a picture shows: finite, and corners of a face if there are faces.
-/// @throws InvalidGeometry if there is none.
+/// The points that a picture shows: finite points; if there are faces, only their corners.
+/// @throws InvalidGeometry if there are none.
 std::vector<Index> shown_points(const Scene& scene);
 
 /// Whether the point has a coordinate.
 bool has_coordinate(const Scene& scene, Index point);
 
-/// Distance from the source as the scene gives it, else |(u, v)|. Only where there is a coordinate.
+/// Distance of a point from the source: the scene's, or else |(u, v)|. Requires a point with a coordinate.
 double distance_at(const Scene& scene, Index point);
 
-/// Frames the mapped part, or everything if nothing is mapped.
+/// Chooses a camera that frames the mapped part, or the whole scene if nothing is mapped.
 Camera choose_camera(const Scene& scene, const std::vector<Index>& shown, const PictureOptions& options);
 
-/// The option, or the round number that gives about 12 rings (4 per cell, 24 squares) on the part of the map in the
-/// picture.
+/// The ring width of the options, or a round number that gives about 12 rings (4 per cell, 24 squares) on the visible part of the map.
 double choose_ring_width(const Scene& scene, const std::vector<Index>& shown, const PictureOptions& options);
 
-/// Pixels here are samples of the picture: x to the right, y down, centers at .5. Nearness is 1 / depth, which is linear
-/// in the picture along any plane; larger is nearer, 0 is infinitely far.
+/// The projection. Its pixels are samples of the picture: x to the right, y down, centers at 0.5. The nearness is 1 / depth, which is a
+/// linear function of x and y on every plane. Larger is nearer; 0 is infinitely far.
 struct Lens {
   Eigen::Matrix3f axes;  ///< rows: right, up, back
   Eigen::Vector3f eye;
@@ -73,7 +72,7 @@ struct Lens {
 
   /// Camera coordinates: x to the right, y up, z towards the viewer.
   Eigen::Vector3f to_view(const Eigen::Vector3f& x) const { return axes * (x - eye); }
-  /// (x, y, nearness) of a place in camera coordinates before the near plane.
+  /// (x, y, nearness) of a position in camera coordinates, in front of the near plane.
   Eigen::Vector3f to_pixels(const Eigen::Vector3f& view) const {
     const float nearness = -1 / view.z();
     return {center_x + focal * nearness * view.x(), center_y - focal * nearness * view.y(), nearness};

@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 
 constexpr std::size_t sample_size = 50'000;
 
-/// The picture is about a curve in one piece, else about the source.
+/// Whether the picture shows a curve in one piece; otherwise it shows the source.
 bool is_about_curve(const Scene& scene) { return !scene.curve.empty() && scene.curve_pieces.empty(); }
 
 /// The source, or points along the curve.
@@ -30,7 +30,7 @@ std::vector<Vec3> places(const Scene& scene) {
   return result;
 }
 
-/// The normal given at the point nearest to a place; zero if there is none.
+/// The scene's normal of the point nearest to a position; zero if there is none.
 Vector3d nearest_normal(const Scene& scene, const std::vector<Index>& shown, const Vec3& place) {
   Vector3d normal = Vector3d::Zero();
   if (scene.normals.empty()) return normal;
@@ -45,7 +45,7 @@ Vector3d nearest_normal(const Scene& scene, const std::vector<Index>& shown, con
   return normal;
 }
 
-/// Normal at the source: from its axes, else of the nearest point, else none (zero). Of a curve: the mean.
+/// The normal at the source: from its axes, or else of the nearest point; zero if there is none. For a curve: the mean normal.
 Vector3d mean_normal(const Scene& scene, const std::vector<Index>& shown) {
   if (scene.source_axes && !is_about_curve(scene)) return as_vector((*scene.source_axes)[2]).normalized();
   Vector3d sum = Vector3d::Zero();
@@ -53,12 +53,12 @@ Vector3d mean_normal(const Scene& scene, const std::vector<Index>& shown) {
   return sum.norm() > 0 ? Vector3d(sum.normalized()) : sum;
 }
 
-/// What stands in the way of a sight: in units of the scene's size.
+/// A tube along the line of sight. Points inside it obstruct the view. Lengths in units of the scene's size.
 struct Tube {
   double start, radius;
 };
 
-/// Number of sampled points in tubes from the places towards the camera, beyond their own surroundings.
+/// Number of sampled points that obstruct the view: those in tubes from the positions towards the camera.
 std::size_t blockers(const Scene& scene, const std::vector<Index>& shown, const Camera& camera,
                      const Vector3d& direction, const Tube& tube) {
   const auto [start, radius] = tube;
@@ -75,7 +75,7 @@ std::size_t blockers(const Scene& scene, const std::vector<Index>& shown, const 
   return count;
 }
 
-/// Of a cloud: a tube as thin as other points lie around the source, to tell the front of a stem or a sheet from its back.
+/// A tube for clouds, with the distance from the source to its neighbors as radius, to distinguish front and back of a stem or a sheet.
 Tube thin_tube(const Scene& scene, const std::vector<Index>& shown, const Camera& camera) {
   constexpr std::size_t around = 6;
   const Vector3d source = camera.to_scene(scene.source);
@@ -90,7 +90,7 @@ Tube thin_tube(const Scene& scene, const std::vector<Index>& shown, const Camera
   return {2 * radius, radius};
 }
 
-/// How many of fifty equal parts of what is mapped stand behind what has no map, seen in perspective.
+/// Computes the part of the map that is hidden behind unmapped parts, in 50ths, in perspective.
 class Cover {
  public:
   Cover(const Scene& scene, const std::vector<Index>& shown, const Camera& camera) {
@@ -119,7 +119,7 @@ class Cover {
   static constexpr std::size_t side = 64;
   static constexpr double width = 0.05;
 
-  /// Points on the faces that have a map, and on those that have none at any corner: at least one in each cell.
+  /// Adds points on faces: on mapped ones, and on those without a coordinate at any corner. The points are dense enough to hit every cell.
   void add_faces(const Scene& scene, const Camera& camera) {
     const std::size_t faces = scene.face_begin.size() - 1, stride = faces / sample_size + 1;
     std::vector<Vector3d> corners;
@@ -145,7 +145,8 @@ class Cover {
         points.emplace_back(a + (i + 1.0 / 3) / parts * (b - a) + (j + 1.0 / 3) / parts * (c - a));
   }
 
-  /// Of the picture, in units of the scene's size at its middle; null outside.
+  /// The cell of a raster of the picture that contains the projection of p; null outside. Cells have the size `width` at the center of the
+  /// scene.
   double* cell(const Vector3d& p, const Vector3d& direction, const Vector3d& x, const Vector3d& y) {
     const double away = 1 / std::tan(Camera::field_of_view / 2), depth = 1 - p.dot(direction) / away;
     if (depth < 0.1) return nullptr;
@@ -158,8 +159,7 @@ class Cover {
   std::array<double, side * side> nearest_{};
 };
 
-/// Of directions all around, those in which nothing stands before the places: the one most like a candidate. None where
-/// there is none.
+/// Of 200 directions on a sphere, the unobstructed one that is the most similar to a candidate; nullopt if all are obstructed.
 std::optional<Vector3d> through_a_gap(const Scene& scene, const std::vector<Index>& shown, const Camera& camera,
                                       const std::vector<Vector3d>& candidates, const auto& is_behind) {
   const double spacing = 1.2 / std::sqrt(static_cast<double>(std::min(shown.size(), sample_size)));
@@ -167,7 +167,7 @@ std::optional<Vector3d> through_a_gap(const Scene& scene, const std::vector<Inde
   std::optional<Vector3d> best;
   double most_alike = -1;
   constexpr int count = 200;
-  for (int k = 0; k < count; ++k) {  // along a spiral
+  for (int k = 0; k < count; ++k) {  // on a spiral
     const double z = 1 - (2.0 * k + 1) / count, ring = std::sqrt(1 - z * z), angle = 2.39996322972865 * k;
     const Vector3d direction(ring * std::cos(angle), ring * std::sin(angle), z);
     double alike = -1;
@@ -189,17 +189,16 @@ Vector3d choose_direction(const Scene& scene, const std::vector<Index>& shown, c
   const Vector3d normal = mean_normal(scene, shown);
   if (!(normal.norm() > 0)) return (side + 0.4 * up.cross(side) + 0.6 * up).normalized();
 
-  const bool is_level = std::abs(normal.dot(up)) > 0.9;  // ground seen straight down shows no relief: lean back more
+  const bool is_level = std::abs(normal.dot(up)) > 0.9;  // tilt more: a vertical view shows no relief
   const Vector3d lean = is_level ? side : up, turn = is_level ? up.cross(side) : normal.cross(up).normalized();
   const double amount = is_level ? 0.9 : 0.3;
-  // Best first; the normal's sign is tried as given, then reversed, since scans come with either.
+  // Best first. Both signs of the normal are candidates, because scans have normals of either sign.
   constexpr std::array<std::array<double, 2>, 7> tilts{
       {{1, 0.35}, {1, -0.35}, {0.5, 0.15}, {0.5, -0.15}, {2, 0}, {0, 0}, {-0.5, 0}}};
   std::vector<Vector3d> candidates;
   for (const double sign : {1.0, -1.0}) {
     const Vector3d level = sign * (normal - normal.dot(up) * up);
-    const Vector3d usual =
-        (level.normalized() + 0.4 * up + 0.3 * turn).normalized();  // things are seen from above as a rule
+    const Vector3d usual = (level.normalized() + 0.4 * up + 0.3 * turn).normalized();  // slightly from above
     if (usual.dot(sign * normal) > 0.5) candidates.push_back(usual);
     for (const auto& [a, b] : tilts) candidates.push_back((sign * normal + a * amount * lean + b * turn).normalized());
   }
@@ -211,7 +210,7 @@ Vector3d choose_direction(const Scene& scene, const std::vector<Index>& shown, c
   const auto is_behind = [&](const Vector3d& direction) {
     return is_cloud && blockers(scene, shown, camera, direction, thin) > 2;
   };
-  // Before the source, more than noise close before it, before the map.
+  // Compared in this order: obstructions of the source, more than noise close to the source, hidden parts of the map.
   std::array<std::size_t, 3> fewest{std::numeric_limits<std::size_t>::max(), 0, 0};
   for (const Vector3d& direction : candidates) {
     const std::array count{blockers(scene, shown, camera, direction, wide), std::size_t{is_behind(direction)},

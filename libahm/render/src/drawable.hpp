@@ -1,4 +1,4 @@
-// A scene turned into float arrays, as the rasteriser and a browser take them.
+// A scene as arrays of floats, for the rasterizer and the browser.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,51 +10,51 @@
 
 namespace ahm::render {
 
-inline constexpr std::size_t splat_ring = 6;  ///< neighbours a disc reaches, so that discs overlap
+inline constexpr std::size_t splat_ring = 6;  ///< number of neighbors that a disc reaches, so that discs overlap
 
-/// Where a drawn triangle is from.
+/// The face and the corners of a drawn triangle.
 struct TriangleOrigin {
   Index face;
   std::array<std::uint16_t, 3> corners;
-  std::uint16_t sides;  ///< of the face
+  std::uint16_t sides;  ///< number of corners of the face
 };
 
-/// One entry per vertex in every array. Positions in the camera's scene coordinates.
+/// Vertices and triangles, or discs. Arrays have one entry per vertex or disc unless noted otherwise. Positions are in scene coordinates of
+/// the camera.
 struct Drawable {
   std::vector<Eigen::Vector3f> positions;
   std::vector<Eigen::Vector3f> normals;
-  /// What is interpolated between vertices, for the material to paint by: (u, v, quality) as in `Paint`, a place on a
-  /// texture, or a color in linear light.
+  /// Interpolated values that the material converts to colors: (u, v, quality) as in `Paint`, texture coordinates, or a linear color.
   std::vector<Eigen::Vector3f> values;
-  std::vector<float> known;              ///< 1, or 0 where there is no coordinate
-  std::vector<float> radii;              ///< of the disc that stands for a point; clouds only
+  std::vector<float> known;              ///< 1, or 0 for vertices without a coordinate
+  std::vector<float> radii;              ///< radii of the discs; clouds only
   std::vector<std::uint32_t> triangles;  ///< three per triangle; meshes only
-  std::vector<Index> points;             ///< of the scene, that the vertices stand for
-  /// One per triangle where the map is torn nowhere.
+  std::vector<Index> points;             ///< index of the point in the scene
+  /// One per triangle; valid only if no triangle is torn.
   std::vector<TriangleOrigin> origins;
-  /// The points nearest to a point, itself where there are fewer; clouds only.
+  /// Nearest neighbors of each point, filled up with the point itself; clouds only.
   std::vector<std::array<std::uint32_t, splat_ring>> rings;
-  /// Change of the first two values per unit of length along the disc; clouds only, empty: they do not change.
+  /// Gradients of the first two values in the plane of the disc, per unit of length; clouds only. Empty: constant values.
   std::vector<std::array<Eigen::Vector3f, 2>> gradients;
-  /// Discs that overlap are blended where their values differ by less than this many of their radii.
+  /// Overlapping discs are blended if their values differ by less than this number times the radius.
   float values_per_length = 0;
 
   bool is_mesh() const { return radii.empty(); }
   std::size_t primitives() const { return is_mesh() ? triangles.size() / 3 : positions.size(); }
 };
 
-/// The faces as triangles. Vertices are doubled where the surface has a crease or the map is torn (its cut locus).
+/// Converts faces to triangles. Vertices are duplicated at creases and where the map is torn (at its cut locus).
 Drawable make_surface(const Scene& scene, const Camera& camera, const Paint& paint);
 
-/// The points as discs sized by the distance to their neighbours, normals estimated where none is given.
+/// Converts points to discs. Their radii follow from the distances to the neighbors; missing normals are estimated.
 Drawable make_splats(const Scene& scene, const std::vector<Index>& shown, const Camera& camera, const Paint& paint,
                      unsigned threads);
 
-/// One of the two.
+/// `make_surface` if the scene has faces, else `make_splats`.
 Drawable make_drawable(const Scene& scene, const std::vector<Index>& shown, const Camera& camera, const Paint& paint,
                        unsigned threads);
 
-/// Typical distance between vertices in scene units: the median radius of discs, the mean edge of a mesh.
+/// Typical distance between vertices, scene units: the median radius of discs, or the mean edge length of a mesh.
 float typical_spacing(const Drawable& drawable);
 
 }  // namespace ahm::render

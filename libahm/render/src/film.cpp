@@ -12,7 +12,7 @@ struct Step {
   float length;
 };
 
-/// Eight places around, this many pixels away.
+/// Offsets of eight pixels on a circle.
 std::array<Step, 8> circle(float radius, float turn) {
   std::array<Step, 8> steps;
   for (std::size_t k = 0; k < 8; ++k) {
@@ -23,7 +23,7 @@ std::array<Step, 8> circle(float radius, float turn) {
   return steps;
 }
 
-/// How much light is left in crevices (Boucheny's eye-dome lighting), seen at two radii.
+/// Darkening of crevices by Boucheny's eye-dome lighting, with two radii.
 class Crevices {
  public:
   Crevices(const Film& film, float focal)
@@ -38,7 +38,7 @@ class Crevices {
         const int column = std::clamp(x + step.x, 0, film_.width - 1),
                   row = std::clamp(y + step.y, 0, film_.height - 1);
         const float other = film_.at(column, row).nearness;
-        // (depth - other depth) in pixels at this depth, per pixel of distance
+        // (depth - other depth) in pixels at this depth, divided by the distance in pixels
         if (other > nearness) sum += std::clamp((1 - nearness / other) * focal_ / step.length - 1, 0.0F, 4.0F);
       }
     return sum > 0 ? std::exp(-0.05F * sum) : 1;
@@ -78,7 +78,7 @@ void fill_pinholes(Film& film, float gap, unsigned threads) {
     std::scoped_lock lock(mutex);
     filled.insert(filled.end(), found.begin(), found.end());
   });
-  for (const auto& [place, pixel] : filled) film.pixels[place] = pixel;  // each place once: any order
+  for (const auto& [place, pixel] : filled) film.pixels[place] = pixel;  // any order, because each pixel occurs once
 }
 
 Image develop(const Film& film, float focal, bool darken, unsigned threads) {
@@ -103,7 +103,7 @@ namespace {
 
 using Eigen::Vector3f;
 
-/// Adds the vertex where the edge from a (before the near plane) to b (behind it) meets the plane.
+/// Adds the intersection of the near plane with the edge from a (in front of the plane) to b (behind it).
 std::uint32_t add_on_plane(Drawable& d, std::uint32_t a, std::uint32_t b, float t) {
   const auto between = [&](auto& array) { array.push_back(array[a] + t * (array[b] - array[a])); };
   between(d.positions), between(d.normals), between(d.values), between(d.known);
@@ -121,7 +121,7 @@ std::vector<Vector3f> project(const Drawable& drawable, const Lens& lens) {
   return pixels;
 }
 
-/// Cuts off what lies behind the near plane.
+/// Removes the parts of triangles behind the near plane.
 Drawable clipped(Drawable d, const Lens& lens) {
   std::vector<std::uint32_t> kept;
   const auto depth = [&](std::uint32_t vertex) { return -lens.to_view(d.positions[vertex]).z(); };

@@ -1,4 +1,4 @@
-// The picture while it is drawn: light and nearness of every pixel.
+// The picture during rendering: color and nearness of every pixel.
 #pragma once
 
 #include <cstdint>
@@ -13,11 +13,11 @@
 
 namespace ahm::render {
 
-/// Light in 65535ths, that of the background left out.
+/// A pixel; linear color in 65535ths, without the background.
 struct Pixel {
   std::array<std::uint16_t, 3> light{};
-  std::uint16_t cover = 0;  ///< how much of the pixel is not background
-  float nearness = 0;       ///< of the nearest thing in it
+  std::uint16_t cover = 0;  ///< covered part of the pixel, in 65535ths
+  float nearness = 0;       ///< nearness of the nearest object in the pixel
 };
 
 struct Film {
@@ -33,21 +33,23 @@ struct Film {
   }
 };
 
-/// Fills single pixels that chance left open between points: all around, something is nearer by more than `gap`.
+/// Fills single pixels that are gaps between discs: at least seven of eight surrounding pixels are nearer by more than `gap`.
 void fill_pinholes(Film& film, float gap, unsigned threads);
 
-/// The picture on white. `focal` in pixels.
-/// @param darken  what lies behind its surroundings
+/// Converts the film to an image on a white background.
+/// @param focal   focal length, pixels
+/// @param darken  darkens pixels that are behind their surroundings
 Image develop(const Film& film, float focal, bool darken, unsigned threads);
 
+/// An object that is drawn, with its projection and its primitives by tile.
 class Layer {
  public:
-  /// Triangles that reach behind the camera are cut there.
+  /// Clips triangles at the near plane.
   Layer(Drawable drawable, const Material& material, const Lens& lens, const Tiles& tiles);
 
   const Drawable& drawable() const { return drawable_; }
   const Material& material() const { return material_; }
-  /// (x, y, nearness) of a mesh's vertex; nearness 0 behind the camera.
+  /// (x, y, nearness) of a vertex of a mesh; the nearness is 0 behind the camera.
   const Eigen::Vector3f& pixel(std::uint32_t vertex) const { return pixels_[vertex]; }
   std::span<const std::uint32_t> in_tile(int tile) const { return bins_[tile]; }
 
@@ -60,7 +62,7 @@ class Layer {
   Bins bins_;
 };
 
-/// Radius of a disc as it is drawn, at least a sample, at this nearness.
+/// Radius of a disc when drawn at this nearness: at least one sample.
 inline float drawn_radius(float radius, float nearness, const Lens& lens) {
   return std::max(radius, 1 / (lens.focal * nearness));
 }

@@ -1,4 +1,4 @@
-// The few words of GLSL that palette.glsl uses, so that one text gives the colors here and in the browser.
+// The GLSL types and functions that palette.glsl uses, so that C++ and the browser share one file.
 #pragma once
 
 #include <algorithm>
@@ -6,7 +6,7 @@
 
 namespace ahm::render::glsl {
 
-// NOLINTBEGIN(readability-identifier-naming): these names are GLSL's
+// NOLINTBEGIN(readability-identifier-naming): names of GLSL
 struct vec2 {
   float x = 0, y = 0;
   vec2() = default;

@@ -33,7 +33,7 @@ vec3 shade(const Material& material, Fragment& f) {
              glsl::from_srgb(static_cast<float>(blue))};
     f.opacity = material.transparent ? static_cast<float>(opacity) : 1;
   }
-  const bool glossy = material.kind == Material::Kind::pattern;  // images keep their hues
+  const bool glossy = material.kind == Material::Kind::pattern;  // textures have no highlights
   return glsl::clamp(glossy ? glsl::lit(color, f.normal, vec3(0, 0, 1)) : glsl::matte(color, f.normal), 0, 1);
 }
 
@@ -42,14 +42,14 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr std::size_t colors = 12;  // of `cell_color` in palette.glsl
+constexpr std::size_t colors = 12;  // number of colors of `cell_color` in palette.glsl
 
 struct Cell {
   Index label;
   Vector3d middle;
 };
 
-/// The cells by their labels, each with the mean of its points.
+/// The cells in the order of their labels, each with the mean of its points.
 std::vector<Cell> cells_of(const Scene& scene, const std::vector<Index>& shown) {
   std::vector<Index> order;
   for (const Index i : shown)
@@ -66,7 +66,7 @@ std::vector<Cell> cells_of(const Scene& scene, const std::vector<Index>& shown) 
   return cells;
 }
 
-/// Per cell the color whose cells so far are the farthest away.
+/// The color of each cell: the one with the most distant cells among those before.
 std::vector<double> colors_of(const std::vector<Cell>& cells) {
   std::vector<double> result;
   for (std::size_t c = 0; c < cells.size(); ++c) {
@@ -81,7 +81,7 @@ std::vector<double> colors_of(const std::vector<Cell>& cells) {
   return result;
 }
 
-/// The farthest distance, in whole rings.
+/// Largest distance of a point from the source, world units.
 double largest_distance(const Scene& scene, const std::vector<Index>& shown) {
   double largest = 0;
   for (const Index i : shown)

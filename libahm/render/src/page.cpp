@@ -18,7 +18,7 @@ namespace {
 
 using Eigen::Vector3d;
 using nlohmann::json;
-static_assert(sizeof(Eigen::Vector2f) == 8 && sizeof(Eigen::Vector3f) == 12);  // arrays of them are arrays of floats
+static_assert(sizeof(Eigen::Vector2f) == 8 && sizeof(Eigen::Vector3f) == 12);  // stored as arrays of floats
 
 std::uint8_t byte(float x) { return static_cast<std::uint8_t>(std::lround(255 * std::clamp(x, 0.0F, 1.0F))); }
 
@@ -26,7 +26,7 @@ float largest_radius(const Drawable& drawable) {
   return drawable.is_mesh() ? 1 : *std::max_element(drawable.radii.begin(), drawable.radii.end());
 }
 
-/// Normal and radius in four bytes.
+/// The normal and radius of each vertex or disc, in four bytes.
 std::vector<std::array<std::uint8_t, 4>> discs(const Drawable& drawable) {
   const float largest = largest_radius(drawable);
   std::vector<std::array<std::uint8_t, 4>> out(drawable.normals.size());
@@ -40,8 +40,8 @@ std::vector<std::array<std::uint8_t, 4>> discs(const Drawable& drawable) {
 
 json triple(const Vector3d& x) { return {x.x(), x.y(), x.z()}; }
 
-/// Points of clouds far from each other follow one another, so that a part of them is a thinner cloud: every point is
-/// taken once, in steps of about n over the golden ratio.
+/// A permutation in which consecutive points are usually far apart, so that the first points are a thinned cloud. The step is about n
+/// divided by the golden ratio.
 std::vector<Index> scattered(std::vector<Index> points) {
   const auto n = static_cast<std::uint64_t>(points.size());
   auto step = std::max<std::uint64_t>(1, static_cast<std::uint64_t>(static_cast<double>(n) * 0.6180339887498949));
@@ -114,7 +114,7 @@ struct PageSurface::Impl {
                                   {"aspect", static_cast<double>(options.width) / options.height}});
   }
 
-  /// By row, in units of the scale.
+  /// Converts lengths to units of the scale.
   std::vector<float> lengths(std::span<const double> values) const {
     std::vector<float> out;
     out.reserve(values.size());
@@ -122,7 +122,7 @@ struct PageSurface::Impl {
     return out;
   }
 
-  /// What is painted by row: (u, v), or (color, distance) of cells.
+  /// The values of each row: (u, v), or (color, distance) for cells.
   std::vector<Eigen::Vector2f> painted(const Scene& scene, const Paint& paint) const {
     std::vector<Eigen::Vector2f> out(scene.points.size(), Eigen::Vector2f::Constant(NAN));
     const bool is_cells = paint.pattern == Pattern::cells;
@@ -135,7 +135,8 @@ struct PageSurface::Impl {
     return out;
   }
 
-  /// By disc in six bytes, 127 for zero; the largest component stands for `steepest`.
+  /// The gradients of both values of each disc, in six bytes; 127 means zero.
+  /// @param steepest  set to the largest component, at most 4: the scale of the bytes
   std::vector<std::array<std::uint8_t, 6>> slopes(const std::vector<Eigen::Vector2f>& painted, bool is_cells,
                                                   float& steepest) const {
     const std::size_t n = drawable.points.size();
@@ -152,7 +153,7 @@ struct PageSurface::Impl {
     steepest = 0;
     for (const auto& g : gradients)
       steepest = std::max({steepest, g[0].cwiseAbs().maxCoeff(), g[1].cwiseAbs().maxCoeff()});
-    steepest = std::min(steepest, 4.0F);  // of an isometry it is 1
+    steepest = std::min(steepest, 4.0F);  // 1 for an isometry
     const float scale = steepest > 0 ? 0.5F / steepest : 0;
     std::vector<std::array<std::uint8_t, 6>> out(n);
     for (std::size_t i = 0; i < n; ++i)

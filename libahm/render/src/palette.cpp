@@ -6,7 +6,7 @@
 
 namespace ahm::render::glsl {
 
-// Included rather than compiled by itself: a browser gets the same text.
+// Included, because the browser uses the same file.
 #include "palette.glsl"
 
 float from_srgb(float tone) { return detail::light_of(tone); }

@@ -1,7 +1,7 @@
-// The colors of every picture, for GLSL ES 1.00 and, with glsl.hpp, for C++ alike.
+// The colors of all pictures, for GLSL ES 1.00 and, with glsl.hpp, for C++.
 const float pi = 3.14159265;
 
-// OKLCh (Ottosson 2020): hues of equal lightness look equally bright, which HSV's do not. Result: linear RGB.
+// Linear RGB of an OKLCh color (Ottosson 2020). Unlike in HSV, hues of equal lightness look equally bright.
 vec3 oklch(float lightness, float chroma, float hue) {
   float a = chroma * cos(hue), b = chroma * sin(hue);
   float l = lightness + 0.3963377774 * a + 0.2158037573 * b;
@@ -16,15 +16,15 @@ vec3 oklch(float lightness, float chroma, float hue) {
 // Integral of the wave that is +1 on even and -1 on odd unit intervals.
 float triangle_wave(float x) { return 1.0 - abs(2.0 * fract(0.5 * x) - 1.0); }
 
-// That wave averaged over a pixel of this width: sharp near by, plain gray where cells are smaller than pixels.
+// The square wave, averaged over a pixel of this width: gray where intervals are smaller than pixels.
 float square_wave(float x, float width) {
   float w = max(width, 0.004);
   return (triangle_wave(x + 0.5 * w) - triangle_wave(x - 0.5 * w)) / w;
 }
 
-// Below, dx and dy are the changes of uv over one pixel; the result is linear RGB.
+// In the following functions, dx and dy are the changes of uv over one pixel. The result is linear RGB.
 
-// Rings and sectors about the source; uv in ring widths.
+// Rings and sectors around the source. uv in ring widths.
 vec3 polar_color(vec2 uv, vec2 dx, vec2 dy, float sectors) {
   float r = max(length(uv), 1e-6);
   vec2 radial = uv / r, around = vec2(-radial.y, radial.x);
@@ -37,7 +37,7 @@ vec3 polar_color(vec2 uv, vec2 dx, vec2 dy, float sectors) {
   return mix(oklch(0.50, 0.125, hue), oklch(0.83, 0.105, hue), 0.5 + 0.5 * checker);
 }
 
-// Squares of u and v: warm to the left of the curve (v > 0), cold to its right, further round the hues with every stripe.
+// Squares of u and v: warm colors on the left of the curve (v > 0), cold colors on the right. The hue changes with the distance.
 vec3 grid_color(vec2 uv, vec2 dx, vec2 dy) {
   vec2 width = abs(dx) + abs(dy);
   float checker = square_wave(uv.x, width.x) * square_wave(uv.y, width.y);
@@ -48,8 +48,8 @@ vec3 grid_color(vec2 uv, vec2 dx, vec2 dy) {
   return mix(dark, light, 0.5 + 0.5 * checker);
 }
 
-// Cells: uv.x is one of twelve colors, uv.y the distance from the cell's source in ring widths. Neighbouring hues
-// differ in lightness, and colors of successive numbers are far apart.
+// Cells: uv.x is the number of one of twelve colors; uv.y is the distance from the cell's source, in ring widths. Adjacent hues differ in
+// lightness, and successive numbers have distant hues.
 vec3 cell_color(vec2 uv, vec2 dx, vec2 dy) {
   float number = floor(uv.x + 0.5);
   float hue = mod(5.0 * number, 12.0) * pi / 6.0 + 0.5;
@@ -58,7 +58,7 @@ vec3 cell_color(vec2 uv, vec2 dx, vec2 dy) {
   return oklch(lightness + 0.035 * ring, 0.115, hue);
 }
 
-// Distances from 0 to 1 in colors of evenly rising lightness: violet, blue, green, yellow.
+// The color of a distance in [0, 1], with evenly increasing lightness: violet, blue, green, yellow.
 vec3 distance_color(float t) {
   t = clamp(t, 0.0, 1.0);
   float lightness = 0.28 + 0.62 * t;
@@ -66,7 +66,7 @@ vec3 distance_color(float t) {
   return oklch(lightness, chroma, 5.45 - 3.62 * t - 0.06 * sin(2.0 * pi * t));
 }
 
-// Thin dark lines at the rings, so that equal distances can be followed.
+// Distance colors with thin dark lines at the rings.
 vec3 distance_with_lines(vec2 uv, vec2 dx, vec2 dy, float rings) {
   float width = max(abs(dx.x) + abs(dy.x), 1e-6);
   float from_line = abs(uv.x - floor(uv.x + 0.5)) / width;
@@ -76,7 +76,7 @@ vec3 distance_with_lines(vec2 uv, vec2 dx, vec2 dy, float rings) {
 
 vec3 plain_color() { return vec3(0.58, 0.56, 0.53); }
 
-// The numbers of ahm::render::Pattern. `sectors` of the polar pattern; `rings` is what the last color stands for.
+// `pattern` is the number of an ahm::render::Pattern. `sectors`: of the polar pattern. `rings`: distance at the end of the color scale.
 vec3 map_color(int pattern, vec2 uv, vec2 dx, vec2 dy, float sectors, float rings) {
   if (pattern == 1) return grid_color(uv, dx, dy);
   if (pattern == 2) return cell_color(uv, dx, dy);
@@ -87,7 +87,7 @@ vec3 map_color(int pattern, vec2 uv, vec2 dx, vec2 dy, float sectors, float ring
 
 vec3 unknown_color() { return vec3(0.42); }
 
-// Where the map is not to be trusted: pale, under dark stripes across the picture. `pixel` in 1200ths of its height.
+// The color where the quality is low: pale, with dark diagonal stripes. `pixel` in 1200ths of the picture's smaller side.
 vec3 untrusted_color(vec3 color, vec2 pixel, float pixel_size) {
   float gray = 0.45 + 0.35 * dot(color, vec3(0.3, 0.5, 0.2));
   float width = 0.1414 * pixel_size;
@@ -95,7 +95,7 @@ vec3 untrusted_color(vec3 color, vec2 pixel, float pixel_size) {
   return mix(vec3(gray), color, 0.18) * (1.0 - 0.62 * stripe);
 }
 
-// Light from over the viewer's left shoulder, in camera coordinates; the normal looks towards the viewer.
+// Diffuse light from above the viewer's left shoulder. The normal is in camera coordinates and points towards the viewer.
 vec3 matte(vec3 color, vec3 normal) {
   vec3 key = normalize(vec3(-0.35, 0.55, 0.85));
   float diffuse = max(0.0, 0.75 * dot(normal, key) + 0.25);

@@ -1,4 +1,4 @@
-// The colors of palette.glsl. All are linear RGB.
+// The functions of palette.glsl. All colors are linear RGB.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ vec3 untrusted_color(vec3 color, vec2 pixel, float pixel_size);
 vec3 matte(vec3 color, vec3 normal);
 vec3 lit(vec3 color, vec3 normal, vec3 to_eye);
 
-/// Light of a number of an sRGB picture, and the number of a light in 65535ths.
+/// Conversion from sRGB to linear light, and from linear light in 65535ths to sRGB.
 float from_srgb(float tone);
 std::uint8_t to_srgb_byte(std::uint16_t light);
 

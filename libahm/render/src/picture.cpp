@@ -29,7 +29,7 @@ void check_direction(const std::optional<Vec3>& direction, const char* name) {
 
 void check_faces(const Scene& scene) {
   if (scene.face_begin.empty()) {
-    require(scene.face_vertices.empty(), "scene.face_vertices: given without scene.face_begin");
+    require(scene.face_vertices.empty(), "scene.face_vertices: must be empty if scene.face_begin is empty");
     return;
   }
   const auto corners = static_cast<Offset>(scene.face_vertices.size());
@@ -52,7 +52,7 @@ void check_size(std::size_t size, std::size_t points, const char* name) {
                               std::to_string(points) + " points; give one per point");
 }
 
-/// What the pattern is painted by; the rest may be there or not, but for labels, which only cells have.
+/// Checks the lengths of the arrays. The pattern determines which are required; only cells have labels; others are optional.
 void check_map(const Scene& scene, Pattern pattern) {
   const auto optional = [&](std::size_t size, const char* name) {
     if (size > 0) check_size(size, scene.points.size(), name);
@@ -62,8 +62,8 @@ void check_map(const Scene& scene, Pattern pattern) {
     check_size(scene.u.size(), scene.points.size(), "u");
     check_size(scene.v.size(), scene.points.size(), "v");
   }
-  require(!cells || scene.u.empty(), "scene.u: given for cells, which are painted by labels");
-  require(cells || scene.labels.empty(), "scene.labels: given for another pattern than cells");
+  require(!cells || scene.u.empty(), "scene.u: must be empty for cells, which have labels");
+  require(cells || scene.labels.empty(), "scene.labels: must be empty unless the pattern is cells");
   if (cells) check_size(scene.labels.size(), scene.points.size(), "labels");
   const bool needs_distance = cells || (pattern == Pattern::distance && scene.u.empty());
   needs_distance ? check_size(scene.distance.size(), scene.points.size(), "distance")

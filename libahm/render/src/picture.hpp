@@ -1,4 +1,4 @@
-// Checks of what the caller passed, shared by all kinds of pictures.
+// Functions shared by all kinds of pictures: checks of arguments, rendering.
 #pragma once
 
 #include "ahm/render/picture.hpp"
@@ -8,10 +8,10 @@
 
 namespace ahm::render {
 
-/// Size and view. @throws InvalidArgument
+/// Checks size and view directions. @throws InvalidArgument
 void check_picture(const PictureOptions& options);
 
-/// @throws InvalidArgument naming the first bad field.
+/// @throws InvalidArgument with the name of the first invalid field
 void check(const Scene& scene, const PictureOptions& options);
 
 struct Painted {
@@ -19,14 +19,15 @@ struct Painted {
   Material material;
 };
 
-/// Draws the things, transparent ones in the given order over the others. The picture does not depend on the number of
+/// Draws objects. Transparent objects are drawn over the others, in the order of the list. The picture does not depend on the number of
 /// threads.
 Film render(std::vector<Painted> things, const Camera& camera, const PictureOptions& options);
 
-/// The film as a picture, without marks. `darken` shows relief, which textures show themselves.
+/// Converts the film to an image, without marks.
+/// @param darken  darkens crevices to show the relief; false for textures
 Image develop(const Film& film, const PictureOptions& options, bool darken = true);
 
-/// Whether a position in scene coordinates is in the picture with nothing before it by more than `tolerance`.
+/// Whether a position is inside the picture and visible: nothing is in front of it by more than `tolerance`. Scene coordinates.
 bool shows(const Film& film, const Camera& camera, const Eigen::Vector3d& position, double tolerance);
 
 }  // namespace ahm::render

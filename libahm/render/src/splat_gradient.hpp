@@ -1,4 +1,4 @@
-// How the values of a cloud change along its discs.
+// Gradients of the values of a cloud, in the planes of its discs.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,14 +11,18 @@
 
 namespace ahm::render {
 
-/// Least squares over the neighbours on the same side of a cut, in the plane of the disc. Zero where they do not span it.
+/// Computes the gradients of two values by least squares over the neighbors on the same side of a cut, in the plane of the disc. Zero if
+/// the neighbors do not span the plane.
 struct SplatGradient {
   const std::vector<Eigen::Vector3f>& normals;
   const std::vector<std::array<std::uint32_t, splat_ring>>& rings;
-  double values_per_length;  ///< how far the map moves per unit of length where it is an isometry
-  bool is_cells = false;     ///< the first value is a color
+  double values_per_length;  ///< length of the gradient of an isometric map
+  bool is_cells = false;     ///< the first value is the number of a color
 
-  /// @param position, value, is_known  by number of the disc: where it is, its two values, whether it has any
+  /// @param k         index of the disc
+  /// @param position  position(k): position of a disc
+  /// @param value     value(k): the two values of a disc
+  /// @param is_known  is_known(k): whether a disc has values
   template <class Position, class Value, class Known>
   std::array<Eigen::Vector3f, 2> operator()(std::size_t k, const Position& position, const Value& value,
                                             const Known& is_known) const {
@@ -38,7 +42,7 @@ struct SplatGradient {
     }
     const double trace = square.trace();
     if (!(square.determinant() > 1e-3 * trace * trace)) return {Eigen::Vector3f::Zero(), Eigen::Vector3f::Zero()};
-    const Eigen::Matrix2d g = square.inverse() * right;  // column c: of value c, along x and y
+    const Eigen::Matrix2d g = square.inverse() * right;  // column c: gradient of value c along x and y
     return {(g(0, 0) * x + g(1, 0) * y).template cast<float>(), (g(0, 1) * x + g(1, 1) * y).template cast<float>()};
   }
 };

@@ -24,8 +24,8 @@ struct Local {
   std::array<std::uint32_t, ring_size> ring{};
 };
 
-/// Radii within bounds: no blob for a floater (its neighbours lie closer to each other than to it), no pinhole for a
-/// doubled point, nothing far from the median.
+/// Limits the radii: not much larger than those of the neighbors (at outliers), not too small (at duplicate points), and not far from the
+/// median.
 std::vector<float> limited_radii(const std::vector<Local>& locals) {
   std::vector<float> radii;
   for (const Local& local : locals) {
@@ -38,13 +38,13 @@ std::vector<float> limited_radii(const std::vector<Local>& locals) {
   std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
   float median = sorted[sorted.size() / 2];
   if (!(median > 0)) median = *std::max_element(radii.begin(), radii.end());
-  if (!(median > 0)) median = 0.05F;  // a single place: a disc one can see
+  if (!(median > 0)) median = 0.05F;  // all points coincide: a visible disc
   median = std::min(median, 0.1F);
   for (float& radius : radii) radius = std::clamp(radius, 0.5F * median, 3 * median);
   return radii;
 }
 
-/// Makes one disc after the other.
+/// Builds the drawable of a cloud.
 class Splatter {
  public:
   Splatter(const Scene& scene, const std::vector<Index>& shown, const Camera& camera, const Paint& paint)
@@ -82,7 +82,7 @@ class Splatter {
   }
 
  private:
-  /// Fills in point k but for its radius.
+  /// Sets position, normal and value of point k. @return its neighbors and its radius before limitation
   Local look_around(const pointcloud::NeighborSearch& search, std::size_t k) {
     const auto i = static_cast<std::size_t>(shown_[k]);
     out_.positions[k] = as_vector(points_[k]).cast<float>();
@@ -97,7 +97,7 @@ class Splatter {
     const auto found = static_cast<std::size_t>(
         search.nearest(points_[k], std::span(index).first(wanted), std::span(squared).first(wanted)));
     if (estimate && found <= ring_size) {
-      out_.normals[k] = Vector3f::Zero();  // too few to tell: it faces the viewer
+      out_.normals[k] = Vector3f::Zero();  // too few neighbors: the disc faces the viewer
     } else if (estimate) {
       const Vec3 normal =
           pointcloud::fit_plane(points_, static_cast<Index>(k), std::span(index).subspan(1, found - 1)).normal;
@@ -105,7 +105,7 @@ class Splatter {
     } else {
       out_.normals[k] = given.normalized().cast<float>();
     }
-    // The first one found is the point itself, or its double.
+    // The first neighbor is the point itself, or a duplicate.
     const std::size_t used = std::min(found, ring_size + 1);
     Local local;
     local.ring.fill(static_cast<std::uint32_t>(k));
@@ -117,7 +117,7 @@ class Splatter {
   const Scene& scene_;
   const std::vector<Index>& shown_;
   const Paint& paint_;
-  double rings_per_length_;  ///< how far the map moves per unit of length where it is an isometry
+  double rings_per_length_;  ///< length of the gradient of an isometric map, rings per unit of length
   std::vector<Vec3> points_;
   Drawable out_;
 };

@@ -12,7 +12,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double crease_cosine = 0.7;  // faces that meet at more than 45 degrees keep a sharp edge
+constexpr double crease_cosine = 0.7;  // edges with more than 45 degrees between their faces stay sharp
 
 Vector3d area_vector(const std::vector<Vector3d>& points, const Triangle& t) {
   const auto& [a, b, c] = t;
@@ -20,8 +20,8 @@ Vector3d area_vector(const std::vector<Vector3d>& points, const Triangle& t) {
   return (at(b) - at(a)).cross(at(c) - at(a)) / 2;
 }
 
-/// A fan from the corner whose triangles all look the way the polygon does, so that most non-convex polygons come out
-/// whole.
+/// Triangulates a polygon as a fan. Chooses the corner from which the triangles have the same orientation as the polygon, which
+/// exists for most non-convex polygons.
 void triangulate(const std::vector<Vector3d>& points, std::size_t face, std::span<const Index> polygon,
                  std::vector<Triangle>& triangles, std::vector<TriangleOrigin>& origins) {
   const std::size_t n = polygon.size();
@@ -51,7 +51,7 @@ void triangulate(const std::vector<Vector3d>& points, std::size_t face, std::spa
   }
 }
 
-/// Collects vertices; a vertex asked for again with the same normal is shared.
+/// Builds the drawable of a mesh. Corners of a point with the same normal share a vertex.
 class SurfaceBuilder {
  public:
   SurfaceBuilder(const Scene& scene, const Camera& camera, const Paint& paint)
@@ -99,7 +99,7 @@ class SurfaceBuilder {
       for (const Index i : triangles_[t]) triangle_of_corner_[next[i]++] = t;
   }
 
-  /// Area-weighted mean of the normals around the corner that are within the crease angle of this triangle's own.
+  /// Area-weighted mean of the normals of triangles around the corner, without those beyond the crease angle from this triangle.
   Vector3d corner_normal(std::size_t triangle, std::size_t corner) const {
     const auto vertex = static_cast<std::size_t>(triangles_[triangle][corner]);
     const Vector3d own = areas_[triangle].normalized();
@@ -129,9 +129,9 @@ class SurfaceBuilder {
     return shared_[i].back();
   }
 
-  /// Two corners whose coordinates lie much farther apart than the corners (and, around a source, point in different
-  /// directions): geodesics arrive there from two sides, and between the corners the map jumps. Interpolated, that would
-  /// be a sheaf of stripes. Between cells the color jumps.
+  /// Whether the map jumps between two corners: their coordinates are much farther apart than the corners (and, around a source, in
+  /// different directions). Geodesics arrive there from two sides. Interpolation would draw a bundle of stripes. For cells: whether
+  /// the color changes.
   bool is_torn(const Triangle& t) const {
     for (std::size_t k = 0; k < 3; ++k) {
       const auto i = static_cast<std::size_t>(t[k]), j = static_cast<std::size_t>(t[(k + 1) % 3]);
@@ -147,7 +147,7 @@ class SurfaceBuilder {
     return false;
   }
 
-  /// What does not jump where the map does: the distance from the source, the curve or the cell's source.
+  /// The distance from the source, the curve or the cell's source, which is continuous where the map jumps.
   double distance(const Vector2d& uv) const {
     if (paint_.pattern == Pattern::polar) return uv.norm();
     return paint_.pattern == Pattern::grid ? std::abs(uv.y()) : uv.y();
@@ -158,7 +158,7 @@ class SurfaceBuilder {
     return {uv.x(), paint_.pattern == Pattern::grid ? std::copysign(distance, uv.y()) : distance};
   }
 
-  /// Each corner keeps its side up to the middle; the distance is interpolated.
+  /// Adds a torn triangle in six parts. Each corner keeps its direction up to the middle of the triangle; the distance is interpolated.
   void add_torn(const std::array<std::uint32_t, 3>& vertex) {
     const auto mean = [&](std::initializer_list<std::size_t> corners, Vector3d& position, Vector3d& normal) {
       double sum = 0;
@@ -186,7 +186,7 @@ class SurfaceBuilder {
   }
 
   const Paint& paint_;
-  double rings_per_length_;  ///< how far the map may move per unit of length where it is an isometry
+  double rings_per_length_;  ///< length of the gradient of an isometric map, rings per unit of length
   std::vector<Vector3d> points_;
   std::vector<Triangle> triangles_;
   std::vector<TriangleOrigin> origins_;

@@ -20,7 +20,7 @@ Vector3f light_of(const std::array<double, 3>& color) {
   return light;
 }
 
-/// Every corner a vertex, since places on an image belong to corners.
+/// The drawable of a part. Every corner is a vertex, because texture coordinates belong to corners.
 Painted painted(const io::MeshPart& part, const Camera& camera) {
   Drawable d;
   for (std::size_t f = 0; f < part.faces.size(); ++f)
@@ -62,11 +62,11 @@ Painted painted_points(const TexturedScene& scene, const Camera& camera, unsigne
     d.known[k] = 1;
     if (!scene.radii.empty()) d.radii[k] = static_cast<float>(scene.radii[shown[k]] / camera.scale);
   }
-  d.values_per_length = std::numeric_limits<float>::infinity();  // colors blend, however they differ
+  d.values_per_length = std::numeric_limits<float>::infinity();  // blend all colors, even if they differ much
   return {std::move(d), {.kind = Material::Kind::color}};
 }
 
-/// All points of the scene, those of textured parts and colored points as mapped, for the camera.
+/// A scene with all points, to choose the camera. Points of textured parts and colored points count as mapped.
 class Gathered {
  public:
   explicit Gathered(const TexturedScene& textured) {
@@ -111,7 +111,7 @@ void check(const TexturedScene& scene, const PictureOptions& options) {
       (!scene.normals.empty() && scene.normals.size() != scene.points.size()))
     throw InvalidArgument("scene: " + std::to_string(scene.points.size()) + " points, " +
                           std::to_string(scene.colors.size()) + " colors, " + std::to_string(scene.radii.size()) +
-                          " radii and " + std::to_string(scene.normals.size()) + " normals do not fit together");
+                          " radii and " + std::to_string(scene.normals.size()) + " normals; the numbers must be equal");
 }
 
 }  // namespace

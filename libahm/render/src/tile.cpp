@@ -16,7 +16,7 @@ bool TileDisc::set(const Layer& from, std::uint32_t point, const Lens& lens, flo
   normal = normal.squaredNorm() > 0 ? normal.normalized().eval() : Eigen::Vector3f::UnitZ().eval();
   if (normal.dot(view) > 0) normal = -normal;
   normal_x = normal.x(), normal_y = normal.y();
-  // Seen edge on, it stays wide enough to be seen. i to the right, j downwards.
+  // Limits the tilt, so that discs stay visible edge-on. i to the right, j down.
   const float steepness = 1 / std::max(normal.z(), 0.25F);
   const float rise_i = -normal.x() * steepness, rise_j = normal.y() * steepness;
   const float radius = drawn_radius(d.radii[point], nearness, lens), sample = 1 / (lens.focal * nearness);
@@ -37,7 +37,7 @@ bool TileDisc::set(const Layer& from, std::uint32_t point, const Lens& lens, flo
   }
   tolerance = d.values_per_length * radius;
   if (from.material().kind == Material::Kind::pattern && from.material().pattern == Pattern::cells)
-    tolerance = std::min(tolerance, 0.9F);  // the first value is a number
+    tolerance = std::min(tolerance, 0.9F);  // the first value is the number of a color
   known = d.known[point] > 0;
   return true;
 }
@@ -56,7 +56,7 @@ bool TileTriangle::set(const Layer& from, std::uint32_t triangle, float tile_x, 
   const double sign = area < 0 ? -1 : 1;
   double slope_x = 0, slope_y = 0, constant = 0;
   for (std::size_t k = 0; k < 3; ++k) {
-    // Two triangles at a common edge get coefficients that differ in sign alone: no sample falls between them.
+    // The coefficients of two triangles at a common edge differ only in sign, so no sample falls between them.
     const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
     const double p = sign * (y[i] - y[j]), q = sign * (x[j] - x[i]), r = sign * (x[i] * y[j] - x[j] * y[i]);
     a[k] = static_cast<float>(p), b[k] = static_cast<float>(q), c[k] = static_cast<float>(r);
@@ -109,7 +109,7 @@ namespace {
 using glsl::vec2;
 using glsl::vec3;
 
-/// Whole samples whose centers lie between two coordinates, within the tile: [first, last).
+/// The samples [first, last) with centers between two coordinates, clamped to the tile.
 struct Range {
   int first, last;
   Range(float from, float to)
@@ -117,7 +117,7 @@ struct Range {
         last(static_cast<int>(std::clamp(std::floor(to + 0.5F), 0.0F, static_cast<float>(Tiles::side)))) {}
 };
 
-/// The samples of a disc in the row j below its center.
+/// The samples of a disc in a row, j samples below its center.
 Range columns_of(const TileDisc& d, float j) {
   const float middle = -d.t_ij * j / d.t_ii;
   const float half = std::sqrt(std::max(0.0F, middle * middle + (1 - d.t_jj * j * j) / d.t_ii));
@@ -184,9 +184,9 @@ void TileRenderer::find_nearest(const TileTriangle& t, std::uint32_t id) {
 }
 
 void TileRenderer::find_nearest(const TileDisc& disc, std::uint32_t id) {
-  const TileDisc d = disc;  // a copy, which no buffer overlaps: the inner loops become vector instructions
+  const TileDisc d = disc;  // a copy that cannot alias the buffers, so that the compiler vectorizes the inner loops
   const Range rows(d.y - d.half_height, d.y + d.half_height);
-  const float bias = 0.3F * d.thickness;  // a slight bulge: among overlapping discs the nearest center wins
+  const float bias = 0.3F * d.thickness;  // a slight bulge: of overlapping discs, the one with the nearest center wins
   for (int row = rows.first; row < rows.last; ++row) {
     const float j = static_cast<float>(row) + 0.5F - d.y;
     const Range columns = columns_of(d, j);
@@ -211,7 +211,7 @@ void TileRenderer::find_blocks() {
   }
 }
 
-/// Behind everything in front of it.
+/// Whether the disc is behind all samples that it could cover.
 bool TileRenderer::is_hidden(const TileDisc& d) const {
   const Range columns(d.x - d.half_width, d.x + d.half_width), rows(d.y - d.half_height, d.y + d.half_height);
   const float nearest =
@@ -231,7 +231,7 @@ void TileRenderer::start_sums() {
     const TileDisc& d = discs_[front_[s] & ~disc_bit];
     const vec2 middle = middle_of(s);
     const float i = middle.x - d.x, j = middle.y - d.y;
-    // What is not known agrees with nothing.
+    // Discs without values are not similar to any disc.
     sums_.front_first[s] = d.known ? d.value.x + d.value_i.x * i + d.value_j.x * j : std::numeric_limits<float>::max();
     sums_.front_second[s] = d.value.y + d.value_i.y * i + d.value_j.y * j;
   }
@@ -285,7 +285,7 @@ Fragment TileRenderer::fragment(int s) const {
   return f;
 }
 
-/// Of one sample by itself.
+/// The color of a single sample.
 vec3 TileRenderer::light(int s, vec2 pixel) const {
   const std::uint32_t id = front_[s];
   const auto [x, y] = middle_of(s);
@@ -295,7 +295,7 @@ vec3 TileRenderer::light(int s, vec2 pixel) const {
   return shade(material(id), f);
 }
 
-/// The samples of a pixel; shaded once where they show one piece of one thing.
+/// Shades the samples of a pixel; only once if all of them show the same primitive.
 void TileRenderer::shade_pixel(int x, int y) {
   const std::array<int, 4> s{y * side + x, y * side + x + 1, (y + 1) * side + x, (y + 1) * side + x + 1};
   const vec2 pixel((left_ + static_cast<float>(x)) / factor, (top_ + static_cast<float>(y)) / factor);

@@ -1,41 +1,41 @@
-// A point of a cloud in one tile: a tilted disc whose values change along it.
+// Discs and triangles in a tile of the picture, and the renderer of a tile.
 #pragma once
 
 #include "film.hpp"
 
 namespace ahm::render {
 
-/// Coordinates are samples from the tile's corner; i, j samples from the disc's center. The disc is taken as seen from
-/// straight ahead, which it is small enough for.
+/// A point of a cloud in a tile: a tilted disc with linear values. x and y are samples from the tile's corner; i and j are samples from
+/// the disc's center. The projection of a disc is orthographic, which is accurate for small discs.
 struct TileDisc {
   const Layer* layer;
   float x, y;
   float t_ii, t_ij, t_jj;  ///< t(i, j): squared distance from the center, 1 at the rim
   float half_width, half_height;
-  float nearness, near_i, near_j;  ///< linear in i, j
-  float thickness;                 ///< in nearness: discs within it of the nearest one are blended
+  float nearness, near_i, near_j;  ///< the nearness, a linear function of i and j
+  float thickness;                 ///< in nearness: discs this close to the nearest one are blended with it
   glsl::vec3 value;
   glsl::vec2 value_i, value_j;  ///< change of the first two values per sample
-  float tolerance;              ///< discs of values closer than this are blended
+  float tolerance;              ///< discs with values closer than this are blended
   bool known;
   float normal_x, normal_y;
 
-  /// False behind the camera.
+  /// @return false if the disc is behind the near plane
   bool set(const Layer& from, std::uint32_t point, const Lens& lens, float tile_x, float tile_y);
 };
 
-/// Coordinates are samples from the tile's corner.
+/// A triangle in a tile. Coordinates are samples from the tile's corner.
 struct TileTriangle {
   const Layer* layer;
   std::array<std::uint32_t, 3> corner;
-  std::array<float, 3> nearness;  ///< of the corners
-  std::array<float, 3> a, b, c;   ///< of corner k: a x + b y + c, positive inside, zero on the opposite side
-  float near_x, near_y, near_0;   ///< nearness: near_x x + near_y y + near_0
+  std::array<float, 3> nearness;  ///< nearness of the corners
+  std::array<float, 3> a, b, c;   ///< a[k] x + b[k] y + c[k] is positive inside and zero on the side opposite corner k
+  float near_x, near_y, near_0;   ///< the nearness is near_x x + near_y y + near_0
   float left, top, right, bottom;
 
-  /// False for a triangle without area.
+  /// @return false for a triangle without area
   bool set(const Layer& from, std::uint32_t triangle, float tile_x, float tile_y);
-  /// Interpolated with perspective.
+  /// The fragment at a position, interpolated with perspective correction.
   Fragment at(float x, float y, const Lens& lens) const;
 
  private:
@@ -43,13 +43,13 @@ struct TileTriangle {
   glsl::vec3 value(const std::array<float, 3>& weight) const;
 };
 
-/// Draws one tile after the other; the buffers are kept.
+/// Draws tiles. Reuses its buffers.
 class TileRenderer {
  public:
-  static constexpr int factor = 2;  ///< samples per pixel and direction
+  static constexpr int factor = 2;  ///< samples per pixel in each direction
 
   TileRenderer(const std::vector<Layer>& layers, const Lens& lens, const Tiles& tiles);
-  /// Fills the tile's pixels. What it draws depends on the tile alone.
+  /// Draws a tile on the film. The result does not depend on tiles drawn before.
   void draw(int tile, Film& film);
 
  private:
@@ -58,12 +58,12 @@ class TileRenderer {
 
   /// Weighted sums over the discs at a sample.
   struct Sums {
-    std::array<float, samples> weight, nearness, normal_x, normal_y;  ///< of all in the front layer
-    std::array<float, samples> known, first, second, third;           ///< of those whose values agree
-    std::array<float, samples> front_first, front_second;             ///< the nearest disc's values
+    std::array<float, samples> weight, nearness, normal_x, normal_y;  ///< sums over all discs in the front layer
+    std::array<float, samples> known, first, second, third;           ///< sums over the discs with similar values
+    std::array<float, samples> front_first, front_second;             ///< values of the nearest disc
   };
 
-  /// Of a sample, in samples from the tile's corner.
+  /// Center of a sample, in samples from the tile's corner.
   static glsl::vec2 middle_of(int sample) {
     const int column = sample % side, row = sample / side;
     return {static_cast<float>(column) + 0.5F, static_cast<float>(row) + 0.5F};
@@ -76,7 +76,7 @@ class TileRenderer {
   bool is_hidden(const TileDisc& disc) const;
   void start_sums();
   void add(const TileDisc& disc);
-  /// What the samples show.
+  /// The blended fragment of the discs at a sample.
   Fragment fragment(int sample) const;
   const Material& material(std::uint32_t id) const;
   glsl::vec3 light(int sample, glsl::vec2 pixel) const;
@@ -87,12 +87,12 @@ class TileRenderer {
   const std::vector<Layer>& layers_;
   const Lens& lens_;
   Tiles tiles_;
-  float left_ = 0, top_ = 0;  ///< of the tile, in samples
+  float left_ = 0, top_ = 0;  ///< position of the tile, samples
   std::vector<TileTriangle> triangles_, transparent_;
   std::vector<TileDisc> discs_;
   std::array<float, samples> nearness_;
   std::array<std::uint32_t, samples> front_;
-  std::array<float, samples / 64> block_;  ///< nearness of the farthest sample of 8 x 8
+  std::array<float, samples / 64> block_;  ///< nearness of the farthest sample of each block of 8 x 8
   std::array<glsl::vec3, samples> light_;
   std::array<bool, samples> covered_;
   Sums sums_;

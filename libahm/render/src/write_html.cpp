@@ -34,7 +34,7 @@ std::string base64(std::string_view data) {
   return out;
 }
 
-/// Text that stays text wherever it stands in the page.
+/// Escapes text for use anywhere in the page.
 std::string escape(std::string_view text) {
   std::string out;
   for (const char c : text) {
@@ -63,7 +63,7 @@ std::string escape(std::string_view text) {
 
 using Values = std::vector<std::pair<std::string_view, std::string_view>>;
 
-/// Gives `write` the page piece by piece, with a value in place of every @NAME@. What a value contains is never looked at.
+/// Passes the page to `write` in pieces, and replaces every @NAME@ by its value. Does not search in the values.
 template <class Write>
 void fill_in(std::string_view page, const Values& values, const Write& write) {
   while (!page.empty()) {
@@ -81,7 +81,7 @@ void fill_in(std::string_view page, const Values& values, const Write& write) {
   }
 }
 
-/// The page but for its data.
+/// The values that do not depend on the data.
 Values fixed_values() {
   using namespace resources;
   return {{"@STYLE@", style},    {"@PALETTE@", palette},  {"@THREE@", three},    {"@ORBIT_CONTROLS@", orbit_controls},

@@ -83,7 +83,7 @@ PrincipalCurvature curvature_by(const Frame& frame, std::span<const Vec3> others
 
 /// Length of the mean of the neighbors' directions, transported to the vertex and treated as axes (angles doubled). 1 where all
 /// are parallel to each other, near 0 where they are random.
-double agreement_around(const TangentGraph& graph, const PrincipalCurvatures& bend, Index vertex) {
+double direction_agreement(const TangentGraph& graph, const PrincipalCurvatures& bend, Index vertex) {
   const Star star = graph.star(vertex);
   double c = 0, s = 0, count = 0;
   for (std::size_t e = 0; e < star.degree(); ++e) {
@@ -97,7 +97,7 @@ double agreement_around(const TangentGraph& graph, const PrincipalCurvatures& be
 }
 
 /// Formats a number with a few digits, for messages.
-std::string shortly(const char* format, double value) {
+std::string format_value(const char* format, double value) {
   char buffer[32];
   std::snprintf(buffer, sizeof buffer, format, value);
   return buffer;
@@ -123,8 +123,8 @@ void check_off_normal(const Vec3& direction, const Vec3& normal, double error, c
   const double off = std::atan2(length(cross(scaled, normal)), std::abs(dot(scaled, normal))) * 180 / std::numbers::pi;
   if (!(off >= error))
     throw InvalidArgument("axis_along_normal",
-                          "the direction is " + shortly("%.2g", off) + " degrees from the normal " + where +
-                              "; the error of the normal in degrees is up to " + shortly("%.2g", error),
+                          "the direction is " + format_value("%.2g", off) + " degrees from the normal " + where +
+                              "; the error of the normal in degrees is up to " + format_value("%.2g", error),
                           "choose another one");
 }
 
@@ -188,10 +188,10 @@ Vec3 bending_direction(const TangentGraph& graph, Vertex vertex, unsigned thread
   const double edge = graph.mean_edge_length() * graph.length_unit();
   if (!(std::abs(first) * edge > 1e-6)) refuse("the surface is flat at the source");
   if (!(std::abs(first - second) > 0.1 * std::abs(first)))
-    refuse("at the source the surface bends equally in all directions (curvatures " + shortly("%.3g", first) + " and " +
-           shortly("%.3g", second) + ")");
-  if (const double agreement = agreement_around(graph, bend, vertex.index); agreement < 0.5)
-    refuse("the directions around the source contradict each other (agreement " + shortly("%.2f", agreement) +
+    refuse("at the source the surface bends equally in all directions (curvatures " + format_value("%.3g", first) +
+           " and " + format_value("%.3g", second) + ")");
+  if (const double agreement = direction_agreement(graph, bend, vertex.index); agreement < 0.5)
+    refuse("the directions around the source contradict each other (agreement " + format_value("%.2f", agreement) +
            " of 1), as on planes and rough scans");
   const auto d = bend.direction(vertex);
   return d[0] * frame.x + d[1] * frame.y;

@@ -70,7 +70,7 @@ class Gluer {
     sides_ = {};
     std::sort(duplicates_.begin(), duplicates_.end());  // each pair was found at every one of its edges
     duplicates_.erase(std::unique(duplicates_.begin(), duplicates_.end()), duplicates_.end());
-    result_.non_manifold_edges = static_cast<Index>(crowded_.count());
+    result_.non_manifold_edges = static_cast<Index>(nonmanifold_edges_.count());
   }
 
   void refuse_duplicates() const {
@@ -82,11 +82,12 @@ class Gluer {
                           "remove them");
   }
 
-  void refuse_crowded_edges() const {
-    if (crowded_.count() > 0)
-      throw InvalidGeometry("non_manifold_edges",
-                            std::to_string(crowded_.count()) + " edges have more than two faces: " + crowded_.text(),
-                            "repair them, or cut the mesh there with NonManifold::split");
+  void refuse_nonmanifold_edges() const {
+    if (nonmanifold_edges_.count() > 0)
+      throw InvalidGeometry(
+          "non_manifold_edges",
+          std::to_string(nonmanifold_edges_.count()) + " edges have more than two faces: " + nonmanifold_edges_.text(),
+          "repair them, or cut the mesh there with NonManifold::split");
   }
 
   /// Reverses faces until neighbors agree, one component at a time.
@@ -164,8 +165,8 @@ class Gluer {
       if (same_face(group[s - 1].half, group[s].half))
         duplicates_.push_back({face_of_[group[s].half], face_of_[group[s - 1].half]});
     if (group.size() > 2)
-      crowded_.add("(" + std::to_string(low) + ", " + std::to_string(group[0].high) + ") with " +
-                   std::to_string(group.size()) + " faces");
+      nonmanifold_edges_.add("(" + std::to_string(low) + ", " + std::to_string(group[0].high) + ") with " +
+                             std::to_string(group.size()) + " faces");
   }
 
   void visit_across(Half h, std::vector<Index>& component) {
@@ -186,7 +187,7 @@ class Gluer {
   std::vector<Offset> begin_;
   std::vector<Side> sides_;
   std::vector<std::pair<Index, Index>> duplicates_;
-  ItemList crowded_;
+  ItemList nonmanifold_edges_;
   Gluing result_;
 };
 
@@ -257,7 +258,7 @@ Gluing glue(Index vertices, const FaceList& faces, NonManifold non_manifold, std
   Gluer gluer(vertices, faces);
   gluer.pair_sides();
   gluer.refuse_duplicates();
-  if (non_manifold == NonManifold::error) gluer.refuse_crowded_edges();
+  if (non_manifold == NonManifold::error) gluer.refuse_nonmanifold_edges();
   gluer.orient(turned);
   return gluer.take();
 }
@@ -447,7 +448,7 @@ class FaceDropper {
   /// Drops the face of a side that has become a point, and glues the faces across its two other sides.
   void collapse(Half side) {
     const Half right = next(side), left = previous(side), beyond_right = twin_[right], beyond_left = twin_[left];
-    take_out(side / 3);
+    drop(side / 3);
     if (beyond_right == left) return;  // the face is glued to itself: nothing is beyond
     const bool mirrored_right = is_mirrored(right), mirrors = mirrored_right != is_mirrored(left);
     glue(beyond_right, beyond_left, mirrors);
@@ -466,7 +467,7 @@ class FaceDropper {
     order_.push_back(side / 3);
   }
 
-  void take_out(Index face) { dropped[face] = 1; }
+  void drop(Index face) { dropped[face] = 1; }
 
   /// Replaces corners in faces that were dropped later by corners in remaining faces.
   void resolve() {
@@ -511,7 +512,7 @@ void close_faces(std::vector<std::uint8_t>& contracted, std::span<const Half> tw
 }
 
 /// Whether some face has no contracted side.
-bool leaves_a_face(std::span<const std::uint8_t> contracted) {
+bool has_remaining_face(std::span<const std::uint8_t> contracted) {
   for (std::size_t h = 0; h < contracted.size(); h += 3)
     if (!contracted[h] && !contracted[h + 1] && !contracted[h + 2]) return true;
   return false;
@@ -521,7 +522,7 @@ bool leaves_a_face(std::span<const std::uint8_t> contracted) {
 
 void GluedMesh::contract(std::vector<std::uint8_t> contracted) {
   close_faces(contracted, twin_);
-  if (std::find(contracted.begin(), contracted.end(), 1) == contracted.end() || !leaves_a_face(contracted)) return;
+  if (std::find(contracted.begin(), contracted.end(), 1) == contracted.end() || !has_remaining_face(contracted)) return;
   given_corners_ = given_corners();
 
   DisjointSets places(vertex_of_input_.size());
@@ -534,7 +535,7 @@ void GluedMesh::contract(std::vector<std::uint8_t> contracted) {
   FaceDropper dropper(twin_, mirrored_, reversed_.size());
   for (Half h = 0; h < static_cast<Half>(tail_.size()); h += 3) {
     if (contracted[h] && contracted[h + 1] && contracted[h + 2]) {
-      dropper.take_out(h / 3);
+      dropper.drop(h / 3);
       continue;
     }
     for (Half side = h; side < h + 3; ++side)

@@ -17,17 +17,17 @@
 namespace ahm {
 namespace {
 
-std::vector<Index> joined_vertices(std::span<const Vec3> positions, const std::optional<double>& reach) {
+std::vector<Index> weld_vertices(std::span<const Vec3> positions, const std::optional<double>& reach) {
   std::vector<Index> result(positions.size());
   std::iota(result.begin(), result.end(), 0);
   if (!reach) return result;
-  const detail::Welded welded = *reach > 0 ? detail::weld(positions, *reach) : detail::weld(positions);
+  const detail::MergedPoints welded = *reach > 0 ? detail::weld(positions, *reach) : detail::weld(positions);
   for (std::size_t v = 0; v < result.size(); ++v) result[v] = welded.first[welded.number[v]];
   return result;
 }
 
 /// The corners of a face without those at the same vertex as the corner before.
-std::vector<Index> without_repeats(std::span<const Index> face, const std::vector<Index>& joined) {
+std::vector<Index> remove_repeated_corners(std::span<const Index> face, const std::vector<Index>& joined) {
   std::vector<Index> corners;
   for (Index v : face)
     if (corners.empty() || corners.back() != joined[v]) corners.push_back(joined[v]);
@@ -47,9 +47,9 @@ void add(std::span<const Index> corners, Index given, RepairedMesh& mesh) {
 }
 
 /// All faces, or only those that are not degenerate, as the options require.
-RepairedMesh sound_faces(std::span<const Vec3> positions, const FaceList& faces, const RepairOptions& options) {
+RepairedMesh clean_faces(std::span<const Vec3> positions, const FaceList& faces, const RepairOptions& options) {
   RepairedMesh mesh;
-  mesh.joined = joined_vertices(positions, options.weld);
+  mesh.joined = weld_vertices(positions, options.weld);
   for (std::size_t v = 0; v < positions.size(); ++v) mesh.counts.welded += mesh.joined[v] != static_cast<Index>(v);
   mesh.face_begin = {0};
   for (std::size_t f = 0; f < faces.size(); ++f) {
@@ -58,7 +58,7 @@ RepairedMesh sound_faces(std::span<const Vec3> positions, const FaceList& faces,
       add(faces[f], given, mesh);
       continue;
     }
-    const std::vector<Index> corners = without_repeats(faces[f], mesh.joined);
+    const std::vector<Index> corners = remove_repeated_corners(faces[f], mesh.joined);
     const bool finite =
         std::ranges::all_of(faces[f], [&](Index v) { return is_finite(positions[v]); }) || !options.drop_degenerate;
     if (!finite || !is_simple(corners)) {
@@ -165,7 +165,7 @@ RepairedMesh repair_mesh(std::span<const Vec3> positions, const FaceList& faces,
   if (const auto faults = detail::find_faults(static_cast<Index>(positions.size()), faces); !faults.outside.empty())
     throw InvalidGeometry("face " + std::to_string(faults.outside.front()) + " has a vertex outside [0, " +
                           std::to_string(positions.size()) + ")");
-  RepairedMesh mesh = sound_faces(positions, faces, options);
+  RepairedMesh mesh = clean_faces(positions, faces, options);
   if (options.drop_duplicates) drop_duplicates(positions, mesh);
   if (options.orient) orient(positions, mesh);
   return mesh;

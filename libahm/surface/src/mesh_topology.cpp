@@ -10,7 +10,7 @@ namespace ahm {
 namespace {
 
 /// Some faces of a mesh, with their numbers in it.
-struct Remaining {
+struct FaceSubset {
   std::vector<Offset> begin{0};
   std::vector<Index> vertices, number;
 
@@ -18,8 +18,8 @@ struct Remaining {
 };
 
 /// The faces that are not left out.
-Remaining without(const FaceList& faces, const std::vector<bool>& left_out) {
-  Remaining result;
+FaceSubset without(const FaceList& faces, const std::vector<bool>& left_out) {
+  FaceSubset result;
   for (std::size_t f = 0; f < faces.size(); ++f) {
     if (left_out[f]) continue;
     result.vertices.insert(result.vertices.end(), faces[f].begin(), faces[f].end());
@@ -42,7 +42,7 @@ MeshInspection inspect_mesh(Index vertices, const FaceList& faces) {
   result.outside = std::move(faults.outside);
   result.small = std::move(faults.small);
   result.repeating = std::move(faults.repeating);
-  Remaining rest = without(faces, left_out);
+  FaceSubset rest = without(faces, left_out);
   for (const auto& [later, earlier] : detail::find_duplicates(vertices, rest.faces()))
     if (const Index f = rest.number[later]; !left_out[f]) left_out[f] = true, result.duplicates.push_back(f);
   if (!result.duplicates.empty()) rest = without(faces, left_out);

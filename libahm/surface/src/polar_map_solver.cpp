@@ -30,12 +30,12 @@ class SideAngles {
       : flat_(flat),
         at_tail_(static_cast<std::size_t>(3 * flat.surface.face_count())),
         at_head_(at_tail_.size()),
-        turns_back_(at_tail_.size()) {
+        is_clockwise_(at_tail_.size()) {
     for (Index v = 0; v < flat.surface.vertex_count(); ++v)
       for_each_corner(v, [&](exact::Corner c, double right, double left) {
         at_tail_[c.half] = c.forward ? right : left;
         at_head_[exact::previous(c.half)] = c.forward ? left : right;
-        turns_back_[c.half] = c.forward == is_mirrored(v);
+        is_clockwise_[c.half] = c.forward == is_mirrored(v);
       });
   }
 
@@ -60,14 +60,14 @@ class SideAngles {
   double at_tail(Half side) const { return at_tail_[side]; }
   double at_head(Half side) const { return at_head_[side]; }
   /// Whether the frames of the two ends of a side have opposite orientations relative to its triangle.
-  bool reflects(Half side) const { return turns_back_[side] != turns_back_[exact::next(side)]; }
+  bool reflects(Half side) const { return is_clockwise_[side] != is_clockwise_[exact::next(side)]; }
 
  private:
   bool is_mirrored(Index vertex) const { return !flat_.mirrored.empty() && flat_.mirrored[vertex] != 0; }
 
   const FlatTriangles& flat_;
   std::vector<double> at_tail_, at_head_;
-  std::vector<char> turns_back_;  ///< per corner: whether its triangle is clockwise in the frame of the vertex
+  std::vector<char> is_clockwise_;  ///< per corner: whether its triangle is clockwise in the frame of the vertex
 };
 
 /// A directed edge in the frame of its first vertex.
@@ -127,13 +127,13 @@ namespace {
 /// At 8 windows per vertex the median map of real meshes has an error of 0.02 of the distance at the 95th percentile
 /// (docs/concepts/accuracy.md). The minimum takes about 15 ms; with it, windows cover surfaces of up to a few thousand
 /// vertices.
-constexpr Offset windows_per_vertex = 8, least_windows = Offset{1} << 17;
+constexpr Offset windows_per_vertex = 8, min_windows = Offset{1} << 17;
 
 /// Converts the result of a front over the triangles of a sheet to seeds of a front over the graph. The triangles are as noisy
 /// as the points, so the seeds are not exact. Their expected error combines the error of `other`, a front from the source
 /// without windows, with the difference to it. The difference is divided by the square root of 2, as for two equally good
 /// estimates.
-std::vector<Wavefront::Seed> found_by(const Wavefront& front, const Wavefront& other, bool frames) {
+std::vector<Wavefront::Seed> seeds_of_front(const Wavefront& front, const Wavefront& other, bool frames) {
   std::vector<Wavefront::Seed> seeds;
   for (Index i = 0; i < front.graph().size(); ++i) {
     const Vertex v(i);
@@ -158,19 +158,19 @@ PolarMapSolver::PolarMapSolver(const TangentGraph& graph, const PolarSolverOptio
         "dimension_not_2",
         "a polar map needs a graph of dimension 2; this one has dimension " + std::to_string(graph.dimension()),
         "use the heat method");
-  stars_ = Wavefront::one_rings(graph, options.threads, false);
+  one_rings_ = Wavefront::one_rings(graph, options.threads, false);
 }
 
 PolarMapSolver::PolarMapSolver(const Surface& surface, const PolarSolverOptions& options)
     : PolarMapSolver(surface.graph(), options) {
   surface_ = &surface;
-  windows_ = options.windows.value_or(std::max(least_windows, windows_per_vertex * graph_->size()));
+  windows_ = options.windows.value_or(std::max(min_windows, windows_per_vertex * graph_->size()));
   if (windows_ <= 0) return;
   try {
     geodesics_.emplace(surface, surface.flat_approximation());
     if (!geodesics_->triangles().approximate) return;
-    sheet_ = std::make_unique<const CsrGraph>(detail::flat_graph(geodesics_->triangles()));
-    sheet_stars_ = Wavefront::one_rings(*sheet_, options.threads, false);
+    triangle_graph_ = std::make_unique<const CsrGraph>(detail::flat_graph(geodesics_->triangles()));
+    triangle_one_rings_ = Wavefront::one_rings(*triangle_graph_, options.threads, false);
   } catch (const InvalidArgument&) {  // no flat triangles
   } catch (const InvalidGeometry&) {  // a face without area
   }
@@ -180,7 +180,7 @@ PolarMapSolver::PolarMapSolver(const Surface& surface, const PolarSolverOptions&
 template <class Seeds>
 LogMap PolarMapSolver::seeded_map(const Source& source, const PolarMapOptions& options, const Seeds& seeds) const {
   return detail::with_memory_check("a polar map", [&] {
-    Wavefront front(*graph_, stars_, true);
+    Wavefront front(*graph_, one_rings_, true);
     front.add(source);
     std::vector<Wavefront::Seed> exact;
     try {
@@ -193,18 +193,18 @@ LogMap PolarMapSolver::seeded_map(const Source& source, const PolarMapOptions& o
       if (!exact.empty()) {
         // Beyond the seeds the front needs its focusing, and its orientation where transports may reflect.
         const double farthest = std::ranges::max_element(exact, {}, &Wavefront::Seed::distance)->distance;
-        const bool goes_on = exact.size() < static_cast<std::size_t>(graph_->size());
-        if (goes_on || over.graph().transport_layout().may_reflect()) over.run(farthest, options.progress.stop);
+        const bool front_continues = exact.size() < static_cast<std::size_t>(graph_->size());
+        if (front_continues || over.graph().transport_layout().may_reflect()) over.run(farthest, options.progress.stop);
         over.restart(exact);
       }
       over.run(options.radius, options.progress.stop);
     };
-    if (sheet_ && !exact.empty()) {
+    if (triangle_graph_ && !exact.empty()) {
       front.run(options.radius, options.progress.stop);
-      Wavefront over(*sheet_, sheet_stars_, true);
+      Wavefront over(*triangle_graph_, triangle_one_rings_, true);
       over.add(source);
       run_from(over);
-      exact = found_by(over, front, options.frames);
+      exact = seeds_of_front(over, front, options.frames);
     }
     run_from(front);
     return polar_map(front, source, options);

@@ -50,7 +50,7 @@ Row RowTree::nearest(const Vec3& position) const {
   return best.entry != nullptr ? best.entry->row : Row{};
 }
 
-void RowTree::look_at(const Entry& entry, const Vec3& position, Best& best) {
+void RowTree::visitor(const Entry& entry, const Vec3& position, Best& best) {
   const double away = distance(entry.position, position);
   const bool first = away == best.distance && best.entry != nullptr && entry.vertex < best.entry->vertex;
   if (away < best.distance || first) best = {away, &entry};
@@ -58,12 +58,12 @@ void RowTree::look_at(const Entry& entry, const Vec3& position, Best& best) {
 
 void RowTree::search(std::size_t begin, std::size_t end, const Vec3& position, Best& best) const {
   if (end - begin <= leaf) {
-    for (std::size_t k = begin; k < end; ++k) look_at(entries_[k], position, best);
+    for (std::size_t k = begin; k < end; ++k) visitor(entries_[k], position, best);
     return;
   }
   const std::size_t half = begin + (end - begin) / 2, axis = axis_[half];
   const double beyond = position[axis] - entries_[half].position[axis];
-  look_at(entries_[half], position, best);
+  visitor(entries_[half], position, best);
   beyond < 0 ? search(begin, half, position, best) : search(half + 1, end, position, best);
   if (std::abs(beyond) > best.distance) return;
   beyond < 0 ? search(half + 1, end, position, best) : search(begin, half, position, best);
@@ -180,30 +180,31 @@ struct FaceTree::Search {
 };
 
 /// Visits the triangles in a box that may be the nearest.
-template <class LookAt>
-void FaceTree::visit(std::size_t number, const Search& search, const LookAt& look_at) const {
+template <class Visitor>
+void FaceTree::visit(std::size_t number, const Search& search, const Visitor& visitor) const {
   const Box& box = boxes_[number];
   if (box.second == 0) {
-    for (std::size_t t = box.begin; t < box.end; ++t) look_at(pieces_[t]);
+    for (std::size_t t = box.begin; t < box.end; ++t) visitor(pieces_[t]);
     return;
   }
   std::size_t near = number + 1, far = box.second;
   if (search.to(boxes_[far]) < search.to(boxes_[near])) std::swap(near, far);
   for (const std::size_t half : {near, far})
-    if (search.may_be_in(boxes_[half])) visit(half, search, look_at);
+    if (search.may_be_in(boxes_[half])) visit(half, search, visitor);
 }
 
 FaceTree::Hit FaceTree::nearest(const Vec3& position) const {
   const double size = std::max({largest(boxes_[0].low), largest(boxes_[0].high), largest(position)});
   const double unit = power_of_two_below(size), scale = 1 / unit;
   Search search{scale, scale * position, scale * largest(position)};
-  visit(0, search,
-        [&](const Piece& piece) { search.least = std::min(search.least, look(piece, search.from, scale).distance); });
+  visit(0, search, [&](const Piece& piece) {
+    search.least = std::min(search.least, nearest_in_piece(piece, search.from, scale).distance);
+  });
   Hit best;
   bool found = false;
   visit(0, search, [&](const Piece& piece) {
     if (found && piece.face > best.point.face) return;
-    const Look here = look(piece, search.from, scale);
+    const Candidate here = nearest_in_piece(piece, search.from, scale);
     if (here.distance > search.least + rounding * std::max(search.size, here.size)) return;
     if (found && piece.face == best.point.face && !(unit * here.distance < best.distance)) return;
     std::vector<double> of_corners(faces_[piece.face].size(), 0.0);
@@ -217,9 +218,9 @@ FaceTree::Hit FaceTree::nearest(const Vec3& position) const {
 }
 
 /// The point of a triangle that is nearest to `from`; all lengths times `scale`.
-FaceTree::Look FaceTree::look(const Piece& piece, const Vec3& from, double scale) const {
+FaceTree::Candidate FaceTree::nearest_in_piece(const Piece& piece, const Vec3& from, double scale) const {
   std::array<Vec3, 3> t;
-  Look here{};
+  Candidate here{};
   for (std::size_t k = 0; k < 3; ++k) {
     t[k] = scale * corner(piece, static_cast<int>(k));
     here.size = std::max(here.size, largest(t[k]));

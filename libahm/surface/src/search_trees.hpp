@@ -32,7 +32,7 @@ class RowTree {
     const Entry* entry;
   };
 
-  static void look_at(const Entry& entry, const Vec3& position, Best& best);
+  static void visitor(const Entry& entry, const Vec3& position, Best& best);
   void build(std::size_t begin, std::size_t end);
   void search(std::size_t begin, std::size_t end, const Vec3& position, Best& best) const;
 

@@ -40,7 +40,7 @@ inline void check_finite(const TangentPoint& point) { check_finite(point.positio
 struct Surface::Lazy {
   std::once_flag once;
   std::optional<FaceTree> tree;
-  std::atomic<int> questions = 0;  ///< number of searches for the nearest row so far
+  std::atomic<int> row_queries = 0;  ///< number of searches for the nearest row so far
   std::once_flag rows_once;
   std::optional<RowTree> rows;
 };
@@ -72,11 +72,11 @@ Row Surface::nearest_row(const Vec3& position) const {
   const std::span<const Vec3> points = positions();
   if (points.empty()) throw InvalidArgument("the surface has no positions, so the nearest row is undefined");
   constexpr int few = 2;  // scans are faster than building a tree
-  if (lazy_->questions >= few) {
+  if (lazy_->row_queries >= few) {
     std::call_once(lazy_->rows_once, [&] { lazy_->rows.emplace(rows(), points, graph().size()); });
     return lazy_->rows->nearest(position);
   }
-  ++lazy_->questions;
+  ++lazy_->row_queries;
   Row best;
   double least = std::numeric_limits<double>::infinity();
   for (Index v = 0; v < graph().size(); ++v) {

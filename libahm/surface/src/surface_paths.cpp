@@ -9,17 +9,17 @@
 namespace ahm {
 namespace {
 
-Vec3 in_space(const std::optional<Vec3>& position) {
+Vec3 to_space(const std::optional<Vec3>& position) {
   if (!position) throw InvalidArgument("lines in space require a graph with frames");
   return *position;
 }
 
-SurfacePath in_space(const TangentGraph& graph, const TangentLine& found) {
+SurfacePath to_space(const TangentGraph& graph, const TangentLine& found) {
   SurfacePath line{found.status, {}, found.length, found.complete};
-  for (const TangentPlanePoint& place : found.places) line.points.push_back(in_space(smooth_position(graph, place)));
+  for (const TangentPlanePoint& place : found.places) line.points.push_back(to_space(smooth_position(graph, place)));
   if (line.points.empty()) return line;
-  line.points.front() = in_space(position(graph, found.places.front()));
-  line.points.back() = in_space(position(graph, found.places.back()));
+  line.points.front() = to_space(position(graph, found.places.front()));
+  line.points.back() = to_space(position(graph, found.places.back()));
   line.length = std::max(line.length, distance(line.points.front(), line.points.back()));
   return line;
 }
@@ -32,7 +32,7 @@ TangentPlanePoint place_of(const Surface& surface, const SurfacePoint& point) {
 
 SurfacePath shortest_line(const Surface& surface, const SurfacePoint& from, const SurfacePoint& to) {
   SurfacePath line =
-      in_space(surface.graph(), shortest_line(surface.graph(), place_of(surface, from), place_of(surface, to)));
+      to_space(surface.graph(), shortest_line(surface.graph(), place_of(surface, from), place_of(surface, to)));
   if (line.points.empty()) return line;
   // The line may end in the tangent plane of another vertex: use the positions of the two points.
   line.points.front() = surface.position(from);
@@ -43,7 +43,7 @@ SurfacePath shortest_line(const Surface& surface, const SurfacePoint& from, cons
 
 SurfacePath trace_line(const Surface& surface, const SurfacePoint& from, const Vec3& direction, double length) {
   const Source source = surface.source(from, direction).source;
-  return in_space(surface.graph(),
+  return to_space(surface.graph(),
                   trace_line(surface.graph(), tangent_plane_point(source), u_axis_at_point(source), length));
 }
 

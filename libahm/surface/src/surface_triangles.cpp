@@ -160,7 +160,7 @@ Source source_of_each_component(const TangentGraph& graph, std::span<const Verte
   return source;
 }
 
-SurfaceFaces found_triangles(const TangentGraph& graph, const LogMap& map) {
+SurfaceFaces triangles_of_map(const TangentGraph& graph, const LogMap& map) {
   SurfaceFaces result;
   result.normals = source_side_normals(graph, map);
   for (Index v = 0; v < graph.size(); ++v) result.points.push_back(graph.frame(v)->origin);
@@ -205,13 +205,13 @@ SurfaceFaces surface_faces(const Surface& surface) {
 SurfaceFaces surface_faces(const Surface& surface, const LogMapSolver& solver, std::span<const Vertex> sources) {
   if (surface.faces().size() > 0) return surface_faces(surface);
   const Source source = source_of_each_component(surface.graph(), sources);
-  return found_triangles(surface.graph(), solver.solve(source, {.frames = true}));
+  return triangles_of_map(surface.graph(), solver.solve(source, {.frames = true}));
 }
 
 SurfaceFaces surface_faces(const Surface& surface, const PolarMapSolver& solver, std::span<const Vertex> sources) {
   if (surface.faces().size() > 0) return surface_faces(surface);
   const Source source = source_of_each_component(surface.graph(), sources);
-  return found_triangles(surface.graph(), solver.log_map(source, {.frames = true}));
+  return triangles_of_map(surface.graph(), solver.log_map(source, {.frames = true}));
 }
 
 std::vector<Triangle> turned_triangles(const Surface& surface, std::span<const Vec3> normals) {
@@ -229,7 +229,7 @@ std::vector<Triangle> turned_triangles(const Surface& surface, std::span<const V
 namespace {
 
 /// With fewer vertices than this per vertex without a triangle, the triangles do not represent the cloud.
-constexpr Index least_per_unused = 50;
+constexpr Index min_vertices_per_unused = 50;
 
 }  // namespace
 
@@ -258,7 +258,7 @@ std::vector<Triangle> mapped_triangles(const Surface& surface) try {
     if (!row) return {};
     rows.push_back(row->index);
   }
-  if (least_per_unused * unused > vertices) return {};
+  if (min_vertices_per_unused * unused > vertices) return {};
   std::vector<Triangle> triangles;
   for (Index f = 0; f < flat.surface.face_count(); ++f) {
     const exact::HalfRecord side = flat.surface.record(3 * f);
@@ -278,7 +278,7 @@ namespace {
 /// Strain above that of the sheet: in torn faces (log 2), and in stretched or shrunk faces next to them (log 1.4).
 constexpr double torn = 0.693147, blended = 0.336472;
 /// Maximum change of the sheet's strain from face to face, and the number of faces over which a map blends two sheets.
-constexpr double drift = 0.05;
+constexpr double max_strain_change = 0.05;
 constexpr int blend = 3;
 
 Vec2 times(const Vec2& a, const Vec2& b) { return {a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]}; }
@@ -289,13 +289,13 @@ class Unfolding {
       : edges_(edges),
         faces_(faces),
         phi_(faces.places.size()),
-        state_(face_count(), unseen),
-        sheet_(state_.size()),
+        state_(face_count(), unvisited),
+        sheet_strain_(state_.size()),
         at_source_(state_.size()) {
     read(map);
     find_source(map.source());
-    judge();
-    if (map.method() == Method::heat) widen();
+    classify_faces();
+    if (map.method() == Method::heat) add_blended_faces();
     unfold();
   }
 
@@ -303,12 +303,12 @@ class Unfolding {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     for (Index f = 0; f < face_count(); ++f)
       for (Half h = begin(f); h < begin(f + 1); ++h)
-        phi_[h] = state_[f] == known ? faces_.unit * phi_[h] : Vec2{nan, nan};
+        phi_[h] = state_[f] == laid_out ? faces_.unit * phi_[h] : Vec2{nan, nan};
     return std::move(phi_);
   }
 
  private:
-  enum : std::uint8_t { unseen, masked, waiting, known };
+  enum : std::uint8_t { unvisited, masked, to_lay_out, laid_out };
 
   Index face_count() const {
     return static_cast<Index>(edges_.face_of.empty() ? edges_.tail.size() / 3 : edges_.face_begin.size() - 1);
@@ -368,9 +368,10 @@ class Unfolding {
   /// Whether a face lies on the sheet. If so, the sheet's strain follows that of the face.
   bool is_on_sheet(Index f) {
     const Strain own = strain(f);
-    if (!(own.stretch <= sheet_[f] + torn)) return false;
+    if (!(own.stretch <= sheet_strain_[f] + torn)) return false;
     if (faces_.orientable && area(f) < -0.1 * own.longest * own.longest) return false;
-    sheet_[f] = std::clamp(own.stretch, sheet_[f] - drift, sheet_[f] + drift);
+    sheet_strain_[f] =
+        std::clamp(own.stretch, sheet_strain_[f] - max_strain_change, sheet_strain_[f] + max_strain_change);
     return true;
   }
 
@@ -383,12 +384,12 @@ class Unfolding {
 
   /// Classifies all faces, outward from the source. Faces that are not reached from there start from any face. At the source
   /// the map is on the sheet, however coarse, unless it reverses a face.
-  void judge() {
+  void classify_faces() {
     std::vector<Index> front;
     const auto visit = [&](Index f, double before) {
-      if (state_[f] != unseen) return;
-      sheet_[f] = before;
-      state_[f] = is_on_sheet(f) || (at_source_[f] && area(f) > 0) ? known : waiting;
+      if (state_[f] != unvisited) return;
+      sheet_strain_[f] = before;
+      state_[f] = is_on_sheet(f) || (at_source_[f] && area(f) > 0) ? laid_out : to_lay_out;
       front.push_back(f);
     };
     for (Index f = 0; f < face_count(); ++f)
@@ -397,23 +398,23 @@ class Unfolding {
     for (Index f = 0; f < face_count(); ++f) {
       for (; at < front.size(); ++at)
         for (Half h = begin(front[at]); h < begin(front[at] + 1); ++h)
-          if (const Half t = edges_.twin[h]; t >= 0) visit(face_of(t), sheet_[front[at]]);
+          if (const Half t = edges_.twin[h]; t >= 0) visit(face_of(t), sheet_strain_[front[at]]);
       visit(f, 0);
     }
   }
 
   /// Marks faces next to torn ones as torn where a heat map blends the two sheets.
-  void widen() {
+  void add_blended_faces() {
     std::vector<Index> front, next;
     for (Index f = 0; f < face_count(); ++f)
-      if (state_[f] == waiting) front.push_back(f);
+      if (state_[f] == to_lay_out) front.push_back(f);
     for (int k = 0; k < blend; ++k, front.swap(next), next.clear())
       for (const Index f : front)
         for (Half h = begin(f); h < begin(f + 1); ++h) {
           const Half t = edges_.twin[h];
-          if (t < 0 || state_[face_of(t)] != known || at_source_[face_of(t)]) continue;
-          if (strain(face_of(t)).either <= sheet_[face_of(t)] + blended) continue;
-          state_[face_of(t)] = waiting;
+          if (t < 0 || state_[face_of(t)] != laid_out || at_source_[face_of(t)]) continue;
+          if (strain(face_of(t)).either <= sheet_strain_[face_of(t)] + blended) continue;
+          state_[face_of(t)] = to_lay_out;
           next.push_back(face_of(t));
         }
   }
@@ -421,25 +422,25 @@ class Unfolding {
   void unfold() {
     std::vector<Index> front;
     for (Index f = 0; f < face_count(); ++f)
-      if (state_[f] == known) front.push_back(f);
+      if (state_[f] == laid_out) front.push_back(f);
     for (std::size_t at = 0; at < front.size(); ++at)
       for (Half h = begin(front[at]); h < begin(front[at] + 1); ++h)
-        if (const Half t = edges_.twin[h]; t >= 0 && state_[face_of(t)] == waiting && lay_beside(h, t)) {
-          state_[face_of(t)] = known;
+        if (const Half t = edges_.twin[h]; t >= 0 && state_[face_of(t)] == to_lay_out && lay_out_next_to(h, t)) {
+          state_[face_of(t)] = laid_out;
           front.push_back(face_of(t));
         }
   }
 
   /// Lays out the face of t next to the face of h without distortion. A corner takes its position in another neighbor where
   /// that is near.
-  bool lay_beside(Half h, Half t) {
-    const bool same_way = edges_.is_mirrored(h);
+  bool lay_out_next_to(Half h, Half t) {
+    const bool is_same_direction = edges_.is_mirrored(h);
     const Half after = edges_.next(t);
-    const Vec2 a = phi_[same_way ? h : edges_.next(h)], b = phi_[same_way ? edges_.next(h) : h];
+    const Vec2 a = phi_[is_same_direction ? h : edges_.next(h)], b = phi_[is_same_direction ? edges_.next(h) : h];
     const Vec2 p = faces_.places[t], q = faces_.places[after];
     if (!(norm(b - a) > 0) || !(norm(q - p) > 0)) return false;
     // The face of h lies to the left of its sides, unless its layout is reversed.
-    const bool turned = (area(face_of(h)) > 0) == same_way;
+    const bool turned = (area(face_of(h)) > 0) == is_same_direction;
     const Vec2 along = normalized(b - a), side = normalized(q - p), back = {side[0], -side[1]};
     const Half first = begin(face_of(t)), last = begin(face_of(t) + 1);
     for (Half c = first; c < last; ++c) {
@@ -452,11 +453,12 @@ class Unfolding {
     const double near = 0.2 * shortest;
     for (Half c = first; c < last; ++c) {
       const Half beyond = edges_.twin[c];
-      if (c == t || beyond < 0 || state_[face_of(beyond)] != known) continue;
+      if (c == t || beyond < 0 || state_[face_of(beyond)] != laid_out) continue;
       const Half ends[] = {c, edges_.next(c)}, there[] = {edges_.next(beyond), beyond};
       for (const int e : {0, 1}) {
-        const Vec2 had = phi_[there[edges_.is_mirrored(c) ? 1 - e : e]];
-        if (ends[e] != t && ends[e] != after && norm(had - phi_[ends[e]]) <= near) phi_[ends[e]] = had;
+        const Vec2 neighbor_position = phi_[there[edges_.is_mirrored(c) ? 1 - e : e]];
+        if (ends[e] != t && ends[e] != after && norm(neighbor_position - phi_[ends[e]]) <= near)
+          phi_[ends[e]] = neighbor_position;
       }
     }
     return true;
@@ -466,7 +468,7 @@ class Unfolding {
   const FlatCorners& faces_;
   std::vector<Vec2> phi_;
   std::vector<std::uint8_t> state_;
-  std::vector<double> sheet_;  ///< per face: the strain of the sheet there
+  std::vector<double> sheet_strain_;  ///< per face: the strain of the sheet there
   std::vector<bool> at_source_;
 };
 

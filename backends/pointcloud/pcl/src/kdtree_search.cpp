@@ -30,7 +30,7 @@ class KdTreeSearch final : public pointcloud::NeighborSearch {
     std::vector<pointcloud::Candidate> found;
     for (std::size_t count = wanted + 4;; count *= 2) {
       const double reached = find(query, std::min(count, points_.size()), found);
-      if (count >= points_.size() || count > most_times * wanted) break;
+      if (count >= points_.size() || count > max_factor * wanted) break;
       std::nth_element(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(wanted - 1), found.end());
       if (reached > std::sqrt(found[wanted - 1].first) + rounding * float_cloud_.unit) break;
     }
@@ -39,7 +39,7 @@ class KdTreeSearch final : public pointcloud::NeighborSearch {
   }
 
  private:
-  static constexpr std::size_t most_times = 8;
+  static constexpr std::size_t max_factor = 8;
   static constexpr double rounding = 4e-7;  ///< error of distances in single precision, points of order one
 
   /// Finds the nearest points in single precision and stores their distances in double precision.

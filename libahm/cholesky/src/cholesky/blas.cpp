@@ -46,7 +46,7 @@ namespace {
 
 /// OpenBLAS has slots for at least 50 buffers, and prints to standard error when they are exceeded. Up to twice this number can be
 /// in use.
-constexpr int most_buffers = 16;
+constexpr int max_buffers = 16;
 constexpr std::size_t buffer_bytes = std::size_t{128} << 20;
 constexpr std::size_t room_for_others = std::size_t{32} << 20;  ///< allocations between our test and OpenBLAS's own
 
@@ -54,7 +54,7 @@ std::condition_variable buffer_is_free;
 int buffers = 0;        // buffers that OpenBLAS keeps
 int buffers_taken = 0;  // buffers reserved by callers
 
-bool there_is_room_for(std::size_t bytes) {
+bool has_room_for(std::size_t bytes) {
   void* const trial = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   return trial != MAP_FAILED && ::munmap(trial, bytes) == 0;
 }
@@ -64,7 +64,7 @@ bool there_is_room_for(std::size_t bytes) {
 bool add_buffer(void* (*take)(int), void (*give_back)(void*)) {
   std::vector<void*> held;  // allocated before the test below
   held.reserve(static_cast<std::size_t>(buffers) + 1);
-  if (!there_is_room_for((static_cast<std::size_t>(buffers_taken) + 1) * buffer_bytes + room_for_others)) return false;
+  if (!has_room_for((static_cast<std::size_t>(buffers_taken) + 1) * buffer_bytes + room_for_others)) return false;
   while (held.size() <= static_cast<std::size_t>(buffers)) held.push_back(take(0));
   for (void* buffer : held) give_back(buffer);
   ++buffers;
@@ -78,7 +78,7 @@ BlasBuffer::BlasBuffer() : counted_(false) {
   static auto* const give_back = find_function<void(void*)>("blas_memory_free");
   if (!take || !give_back || !address_space_is_limited()) return;
   std::unique_lock lock(mutex);
-  if (buffers_taken == buffers && buffers < most_buffers) add_buffer(take, give_back);
+  if (buffers_taken == buffers && buffers < max_buffers) add_buffer(take, give_back);
   if (buffers == 0)
     throw ResourceExhausted(
         "out of memory: the BLAS has no room for its working buffer of 128 MB of address space; raise the limit "

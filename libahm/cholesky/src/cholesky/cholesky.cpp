@@ -52,7 +52,7 @@ double largest(const std::vector<double>& v) {
   return m;
 }
 
-std::vector<std::int32_t> blown_up(const std::vector<std::int32_t>& order, int width) {
+std::vector<std::int32_t> expand_order(const std::vector<std::int32_t>& order, int width) {
   std::vector<std::int32_t> result;
   if (order.size() > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max() / width))
     throw ResourceExhausted("symbolic analysis: the matrix is too large for its index type");
@@ -72,7 +72,7 @@ SymbolicCholesky::SymbolicCholesky(const SparseUpper& pattern, Ordering ordering
     : SymbolicCholesky(analyze(pattern, elimination_order(pattern, ordering))) {}
 
 SymbolicCholesky::SymbolicCholesky(const SparseUpper& blocks, const SymbolicCholesky& scalar, int width)
-    : SymbolicCholesky(analyze(blocks, blown_up(scalar.pattern_->permutation, width))) {}
+    : SymbolicCholesky(analyze(blocks, expand_order(scalar.pattern_->permutation, width))) {}
 
 Offset SymbolicCholesky::nonzeros() const noexcept { return pattern_->numbers(); }
 bool SymbolicCholesky::is_shared() const noexcept { return pattern_->groups != nullptr; }
@@ -122,7 +122,7 @@ std::vector<double> CholeskyFactor::checked_solve(const SparseUpper& matrix, std
 
 void CholeskyFactor::solve(std::span<double> X, Offset columns, unsigned threads) const {
   if (columns <= max_narrow_columns) return narrow_solve(factor(), X, columns, pattern_->groups.get(), threads);
-  if (nonzeros() <= most_block_numbers) return block_solve(factor(), X, columns);
+  if (nonzeros() <= max_block_entries) return block_solve(factor(), X, columns);
   const OneBlasThread one_thread;
   blas_solve(factor(), X, columns);
 }

@@ -13,7 +13,7 @@ namespace {
 
 /// Bound of the squared residual norm, relative. It is below rounding errors of the residual.
 constexpr double tolerance = 1e-34;
-constexpr int most_iterations = 5000;
+constexpr int max_iterations = 5000;
 
 }  // namespace
 
@@ -73,8 +73,8 @@ void ConjugateGradient::solve(std::span<double> x) const {
   std::fill(x.begin(), x.end(), 0.0);
   p = r;
   double rr = dot(r, r);
-  const double enough = tolerance * rr;
-  for (int iteration = 0; rr > enough; ++iteration) {
+  const double target_rr = tolerance * rr;
+  for (int iteration = 0; rr > target_rr; ++iteration) {
     // q = (I + L)^-1 K (I + L^T)^-1 p
     t = p;
     backward(t);
@@ -82,7 +82,7 @@ void ConjugateGradient::solve(std::span<double> x) const {
     forward(q);
     for (std::size_t i = 0; i < n; ++i) q[i] += t[i];
     const double energy = dot(p, q);
-    if (!(energy > 0) || iteration == most_iterations)
+    if (!(energy > 0) || iteration == max_iterations)
       throw NotPositiveDefinite(std::string("operator ") + name_ +
                                 (energy > 0
                                      ? ": conjugate gradients do not converge; t_coef is too large for this graph"

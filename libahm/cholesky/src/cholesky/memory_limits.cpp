@@ -22,7 +22,7 @@ double number_in(const std::filesystem::path& file) {
 
 /// The smallest limit of a control group and its ancestors in a mounted hierarchy. In a container, the process's own group may be
 /// mounted as the root, under any name.
-double least_upwards(const std::filesystem::path& mount, const std::filesystem::path& group, const char* file) {
+double smallest_limit(const std::filesystem::path& mount, const std::filesystem::path& group, const char* file) {
   double least = number_in(mount / file);
   std::filesystem::path here = mount;
   for (const auto& name : group.relative_path()) least = std::min(least, number_in((here /= name) / file));
@@ -42,9 +42,9 @@ double control_group_limit(const std::filesystem::path& groups, const std::files
     controllers.append(line, first + 1, second - first - 1).push_back(',');
     if (controllers == ",,")
       for (const char* mount : {"", "unified"})
-        least = std::min(least, least_upwards(mounts / mount, group, "memory.max"));
+        least = std::min(least, smallest_limit(mounts / mount, group, "memory.max"));
     else if (controllers.find(",memory,") != std::string::npos)
-      least = std::min(least, least_upwards(mounts / "memory", group, "memory.limit_in_bytes"));
+      least = std::min(least, smallest_limit(mounts / "memory", group, "memory.limit_in_bytes"));
   }
   return least;
 }

@@ -17,7 +17,7 @@ namespace ahm {
 namespace {
 
 /// Doubles per tile column: two vectors of four.
-constexpr Offset tall = 8;
+constexpr Offset tile_rows = 8;
 
 /// Computes sum_k L_rk conj(L_ck) for a tile of R * 4 / W rows r and J columns c.
 template <int W, int R, int J>
@@ -73,7 +73,7 @@ struct ColumnBlock {
   }
   [[gnu::always_inline]] void all(Offset begin) const {
     Offset r = begin;
-    for (; r + tall <= rows; r += tall) tile<2>(begin, r);
+    for (; r + tile_rows <= rows; r += tile_rows) tile<2>(begin, r);
     for (; r + 4 <= rows; r += 4) tile<1>(begin, r);
     if (r == rows) return;
     if (rows >= 4) return tile<1>(begin, rows - 4, r - (rows - 4));
@@ -242,7 +242,7 @@ struct Update {
 };
 
 /// Update matrices that have not yet been added to the front of a supernode.
-struct Waiting {
+struct PendingUpdates {
   std::vector<Update> updates;
   Offset numbers = 0;  ///< entries of all updates
 };
@@ -259,13 +259,13 @@ class Multifrontal {
         L_(pattern.factor(W == 2, values)),
         values_(values),
         threads_(threads),
-        waiting_(pattern.super.size() - 1) {}
+        pending_(pattern.super.size() - 1) {}
 
   Offset run() {
-    if (!pattern_.groups) return Branch(*this).in_order(0, static_cast<Offset>(waiting_.size()));
+    if (!pattern_.groups) return Branch(*this).in_order(0, static_cast<Offset>(pending_.size()));
     const SolveGroups& groups = *pattern_.groups;
     std::vector<Offset> failed(static_cast<std::size_t>(groups.count()), L_.size);
-    std::vector<std::vector<Waiting>> for_top(failed.size());
+    std::vector<std::vector<PendingUpdates>> for_top(failed.size());
     detail::parallel_chunks(groups.count(), 1, threads_, [&](Offset group, Offset) {
       for_top[group].resize(groups.top.size());
       Branch branch(*this, &for_top[group]);
@@ -275,7 +275,7 @@ class Multifrontal {
     if (const Offset first = *std::min_element(failed.begin(), failed.end()); first < L_.size) return first;
     Branch top(*this, nullptr, threads_);
     for (std::size_t k = 0; k < groups.top.size(); ++k) {
-      Waiting& all = waiting_[groups.top[k]];
+      PendingUpdates& all = pending_[groups.top[k]];
       for (auto& of_group : for_top)
         std::move(of_group[k].updates.begin(), of_group[k].updates.end(), std::back_inserter(all.updates));
       if (const Offset column = top.eliminate(groups.top[k]); column < L_.size) return column;
@@ -289,7 +289,7 @@ class Multifrontal {
    public:
     /// @param for_top  receives the updates from this group to the top, one entry per supernode of the top
     /// @param threads  threads that share large fronts and updates
-    explicit Branch(Multifrontal& all, std::vector<Waiting>* for_top = nullptr, unsigned threads = 1)
+    explicit Branch(Multifrontal& all, std::vector<PendingUpdates>* for_top = nullptr, unsigned threads = 1)
         : all_(all), for_top_(for_top), threads_(threads), places_(static_cast<std::size_t>(all.L_.size)) {}
 
     /// Eliminates the supernodes first to last - 1. @return as `factor_by_fronts`
@@ -304,24 +304,24 @@ class Multifrontal {
       const Supernode<W> s(all_.L_, number);
       const Offset below = s.rows - s.columns;
       double* L = all_.values_ + s.begin * W;
-      place(s);
+      set_places(s);
       std::fill_n(L, s.rows * s.columns * W, 0.0);
       add_entries(s, L);
-      const Waiting waiting = std::move(all_.waiting_[number]);
-      for (const Update& update : waiting.updates) add<true>(update, s, s.rows, L);
+      const PendingUpdates queue = std::move(all_.pending_[number]);
+      for (const Update& update : queue.updates) add<true>(update, s, s.rows, L);
       Update left{{s.index + s.columns, s.index + s.rows}, nullptr};
       if (below > 0)
         left.numbers = std::make_unique_for_overwrite<double[]>(static_cast<std::size_t>(below * below * W));
       if (const Offset good = factor_front<W>(L, s.rows, s.columns, left.numbers.get(), threads_); good < s.columns)
         return s.first + good;
       if (below == 0) return all_.L_.size;
-      for (const Update& update : waiting.updates) add<false>(update, s, below, left.numbers.get());
-      leave(all_.pattern_.parent[number], std::move(left));
+      for (const Update& update : queue.updates) add<false>(update, s, below, left.numbers.get());
+      pass_to(all_.pattern_.parent[number], std::move(left));
       return all_.L_.size;
     }
 
    private:
-    void place(const Supernode<W>& s) {
+    void set_places(const Supernode<W>& s) {
       for (Offset r = 0; r < s.rows; ++r) places_[s.index[r]] = static_cast<std::int32_t>(r);
     }
 
@@ -356,45 +356,45 @@ class Multifrontal {
             for (int w = 0; w < W; ++w) column[(places_[index[i]] - skipped) * W + w] += from[i * W + w];
         }
       };
-      if (threads_ != 1 && update.size() * update.size() > least_shared)
+      if (threads_ != 1 && update.size() * update.size() > min_shared)
         detail::parallel_chunks(end - begin, columns_at_once, threads_, add);
       else
         add(0, end - begin);
     }
 
-    Waiting& waiting_for(Offset number) {
-      if (!for_top_ || number < last_) return all_.waiting_[number];
+    PendingUpdates& pending_updates_of(Offset number) {
+      if (!for_top_ || number < last_) return all_.pending_[number];
       const std::vector<Offset>& top = all_.pattern_.groups->top;
       return (*for_top_)[std::lower_bound(top.begin(), top.end(), number) - top.begin()];
     }
 
     /// Passes an update to the supernode `parent`. Pending updates are added up when they become much larger than its front, to bound
     /// their memory.
-    void leave(Offset parent, Update update) {
-      Waiting& waiting = waiting_for(parent);
-      waiting.numbers += update.size() * update.size();
-      waiting.updates.push_back(std::move(update));
+    void pass_to(Offset parent, Update update) {
+      PendingUpdates& queue = pending_updates_of(parent);
+      queue.numbers += update.size() * update.size();
+      queue.updates.push_back(std::move(update));
       const Supernode<W> s(all_.L_, parent);
-      if (waiting.numbers <= most_waiting * s.rows * s.rows) return;
+      if (queue.numbers <= max_pending * s.rows * s.rows) return;
       Update sum{{s.index, s.index + s.rows},
                  std::make_unique<double[]>(static_cast<std::size_t>(s.rows * s.rows * W))};
-      place(s);
-      for (const Update& one : waiting.updates) add_columns(one, 0, one.size(), 0, s.rows, sum.numbers.get());
-      waiting.updates.clear();
-      waiting.updates.push_back(std::move(sum));
-      waiting.numbers = s.rows * s.rows;
+      set_places(s);
+      for (const Update& one : queue.updates) add_columns(one, 0, one.size(), 0, s.rows, sum.numbers.get());
+      queue.updates.clear();
+      queue.updates.push_back(std::move(sum));
+      queue.numbers = s.rows * s.rows;
     }
 
     Multifrontal& all_;
-    std::vector<Waiting>* for_top_;
+    std::vector<PendingUpdates>* for_top_;
     unsigned threads_;
     std::vector<std::int32_t> places_;  ///< position of each row in the current front
     Offset last_ = 0;                   ///< end of the current subtree's supernodes
   };
 
-  static constexpr Offset most_waiting = 4;        ///< most entries of pending updates, in multiples of the front
-  static constexpr Offset least_shared = 1 << 16;  ///< updates with more entries are added on several threads
-  static constexpr Offset columns_at_once = 64;    ///< columns of such an update per task
+  static constexpr Offset max_pending = 4;       ///< most entries of pending updates, in multiples of the front
+  static constexpr Offset min_shared = 1 << 16;  ///< updates with more entries are added on several threads
+  static constexpr Offset columns_at_once = 64;  ///< columns of such an update per task
 
   const SparseUpper& matrix_;
   const SupernodalPattern& pattern_;
@@ -402,7 +402,7 @@ class Multifrontal {
   SupernodalFactor L_;
   double* values_;
   unsigned threads_;
-  std::vector<Waiting> waiting_;  ///< pending updates of each supernode, without those from groups to the top
+  std::vector<PendingUpdates> pending_;  ///< pending updates of each supernode, without those from groups to the top
 };
 
 }  // namespace

@@ -9,7 +9,7 @@ namespace ahm {
 namespace {
 
 /// Smaller factors have no groups: starting threads takes longer than reading the factor.
-constexpr Offset least_numbers = 1 << 19;
+constexpr Offset min_entries = 1 << 19;
 /// Number of groups. More groups make the top larger, whose supernodes are processed one after another.
 constexpr std::size_t groups = 4;
 
@@ -38,7 +38,7 @@ Subtrees subtrees_of(const SupernodalFactor& L, std::span<const Offset> parents)
 
 std::unique_ptr<const SolveGroups> solve_groups(const SupernodalFactor& L, std::span<const Offset> parent) {
   const Offset all = L.value_begin.back();
-  if (all < least_numbers) return nullptr;
+  if (all < min_entries) return nullptr;
   const Subtrees subtrees = subtrees_of(L, parent);
   const auto is_top = [&](Offset s) { return subtrees.numbers[s] > all / static_cast<Offset>(groups); };
   const auto supernodes = static_cast<Offset>(parent.size());
@@ -96,7 +96,7 @@ EntriesBy<Member> entries_by(const SparseUpper& matrix, const Numbers& place, co
   EntriesBy<Member> result;
   result.begin.assign(static_cast<std::size_t>(matrix.size()) + 1, 0);
   for_each_entry([&](std::int32_t i, std::int32_t j, Offset) { ++result.begin[key(i, j) + 1]; });
-  result.begin = detail::starts_of(std::move(result.begin));
+  result.begin = detail::begin_of_groups(std::move(result.begin));
   result.members.resize(matrix.rows.size());
   std::vector<Offset> next(result.begin.begin(), result.begin.end() - 1);
   for_each_entry(
@@ -105,9 +105,9 @@ EntriesBy<Member> entries_by(const SparseUpper& matrix, const Numbers& place, co
 }
 
 /// Columns of each row of the matrix up to the diagonal, in elimination order.
-using Before = EntriesBy<std::int32_t>;
+using EarlierColumns = EntriesBy<std::int32_t>;
 
-Before columns_before(const SparseUpper& matrix, const Numbers& place) {
+EarlierColumns earlier_columns(const SparseUpper& matrix, const Numbers& place) {
   const auto later = [](std::int32_t i, std::int32_t j) { return std::max(i, j); };
   return entries_by<std::int32_t>(matrix, place, later,
                                   [](std::int32_t i, std::int32_t j, Offset) { return std::min(i, j); });
@@ -121,7 +121,7 @@ FactorEntries factor_entries(const SparseUpper& matrix, const Numbers& place) {
 }
 
 /// Parent of each column in the elimination tree [Liu90]; -1: root.
-Numbers elimination_tree(const Before& before, std::int32_t n) {
+Numbers elimination_tree(const EarlierColumns& before, std::int32_t n) {
   Numbers parent(static_cast<std::size_t>(n), -1), ancestor(parent);
   for (std::int32_t row = 0; row < n; ++row)
     for (std::int32_t column : before.of(row))
@@ -241,8 +241,8 @@ std::vector<Run> runs_of(const Numbers& parent, const Numbers& counts) {
 /// from the supernodes of its columns to its own.
 /// @param post   columns in postorder
 /// @param place  position of each column in `post`
-void find_indices(SupernodalPattern& pattern, const Numbers& supernode_of, const Before& before, const Numbers& post,
-                  const Numbers& place) {
+void find_indices(SupernodalPattern& pattern, const Numbers& supernode_of, const EarlierColumns& before,
+                  const Numbers& post, const Numbers& place) {
   const auto n = static_cast<std::int32_t>(supernode_of.size());
   pattern.indices.resize(static_cast<std::size_t>(pattern.row_begin.back()));
   std::vector<Offset> next(pattern.row_begin.begin(), pattern.row_begin.end() - 1);
@@ -264,7 +264,7 @@ void find_indices(SupernodalPattern& pattern, const Numbers& supernode_of, const
 
 SymbolicAnalysis analyze(const SparseUpper& matrix, const Numbers& order) {
   const auto n = static_cast<std::int32_t>(matrix.size());
-  const Before before = columns_before(matrix, inverse(order));
+  const EarlierColumns before = earlier_columns(matrix, inverse(order));
   Numbers parent = elimination_tree(before, n);
   const Numbers post = postorder(parent), place = inverse(post);
 

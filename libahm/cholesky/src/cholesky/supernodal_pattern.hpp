@@ -26,7 +26,7 @@ struct SupernodalFactor {
 
   Offset supernodes() const { return static_cast<Offset>(super.size()) - 1; }
   /// Largest number of rows of a supernode.
-  Offset most_rows() const {
+  Offset max_rows() const {
     Offset most = 0;
     for (Offset s = 0; s < supernodes(); ++s) most = std::max(most, row_begin[s + 1] - row_begin[s]);
     return most;

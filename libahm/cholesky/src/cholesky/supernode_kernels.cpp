@@ -17,7 +17,7 @@ struct Number {
     else
       return {x[0], x[1]};
   }
-  [[gnu::always_inline]] void put(double* x) const {
+  [[gnu::always_inline]] void store(double* x) const {
     x[0] = re;
     if constexpr (W == 2) x[1] = im;
   }
@@ -99,7 +99,7 @@ template <int W, int K, int J>
       x[c][a] = Number<W>::at(own);
       for (int b = 0; b < a; ++b) x[c][a].subtract(L.at(b, (j + a) * W), x[c][b]);
       x[c][a].scale(L.inverse[a]);
-      x[c][a].put(own);
+      x[c][a].store(own);
     }
   Offset r = (j + J) * W;
   for (; r + 4 <= rows; r += 4) {
@@ -117,7 +117,7 @@ template <int W, int K, int J>
       double* own = y + c * rows + r;
       Number<W> left = Number<W>::at(own);
       for (int a = 0; a < J; ++a) left.subtract(L.at(a, r), x[c][a]);
-      left.put(own);
+      left.store(own);
     }
 }
 
@@ -148,7 +148,7 @@ template <int W, int K, int J>
       for (Offset rest = below; rest < r; rest += W) x[a].subtract_conjugate(L.at(a, rest), Number<W>::at(own + rest));
       for (int b = a + 1; b < J; ++b) x[a].subtract_conjugate(L.at(a, (j + b) * W), x[b]);
       x[a].scale(L.inverse[a]);
-      x[a].put(own + (j + a) * W);
+      x[a].store(own + (j + a) * W);
     }
   }
 }

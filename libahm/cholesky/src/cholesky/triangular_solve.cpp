@@ -54,7 +54,7 @@ template <int W, int K>
 class NarrowSolve {
  public:
   NarrowSolve(const SupernodalFactor& L, const SolveGroups* groups, unsigned threads)
-      : L_(L), groups_(groups), threads_(threads), x_(L, K), longest_(L.most_rows()) {}
+      : L_(L), groups_(groups), threads_(threads), x_(L, K), longest_(L.max_rows()) {}
 
   void solve(std::span<double> X) {
     const unsigned threads = groups_ ? threads_ : 1;
@@ -73,12 +73,12 @@ class NarrowSolve {
 
   void solve_in_order() {
     Buffer y = rows(longest_);
-    for (Offset s = 0; s < L_.supernodes(); ++s) forward(Supernode<W>(L_, s), y, in_x());
+    for (Offset s = 0; s < L_.supernodes(); ++s) forward(Supernode<W>(L_, s), y, target_in_x());
     for (Offset s = L_.supernodes(); s-- > 0;) backward(Supernode<W>(L_, s), y);
   }
 
   void solve_by_groups() {
-    const auto each_group = [&](const auto& body) {
+    const auto for_each_group = [&](const auto& body) {
       detail::parallel_chunks(groups_->count(), 1, threads_, [&](Offset group, Offset) {
         Buffer y = rows(longest_);
         body(group,
@@ -88,9 +88,9 @@ class NarrowSolve {
       });
     };
     const auto top_rows = static_cast<Offset>(groups_->top_rows);
-    std::vector<Buffer> to_top(static_cast<std::size_t>(groups_->count()));
-    each_group([&](Offset group, const auto& subtrees, Buffer& y) {
-      Buffer& sums = to_top[group] = rows(top_rows);
+    std::vector<Buffer> top_sums(static_cast<std::size_t>(groups_->count()));
+    for_each_group([&](Offset group, const auto& subtrees, Buffer& y) {
+      Buffer& sums = top_sums[group] = rows(top_rows);
       for (const auto& [first, last, end] : subtrees)
         for (Offset s = first; s < last; ++s)
           forward(Supernode<W>(L_, s), y, [&, end = end](int column, Offset row) {
@@ -102,17 +102,17 @@ class NarrowSolve {
       Offset k = column * top_rows * W;
       for (const Offset s : groups_->top)
         for (double* x = at(column, L_.super[s]); x != at(column, L_.super[s + 1]); ++x, ++k)
-          for (const Buffer& sums : to_top) *x += sums[k];
+          for (const Buffer& sums : top_sums) *x += sums[k];
     }
-    for (const Offset s : groups_->top) forward(Supernode<W>(L_, s), y, in_x());
+    for (const Offset s : groups_->top) forward(Supernode<W>(L_, s), y, target_in_x());
     for (auto s = groups_->top.rbegin(); s != groups_->top.rend(); ++s) backward(Supernode<W>(L_, *s), y);
-    each_group([&](Offset, const auto& subtrees, Buffer& own_y) {
+    for_each_group([&](Offset, const auto& subtrees, Buffer& own_y) {
       for (auto tree = subtrees.rbegin(); tree != subtrees.rend(); ++tree)
         for (Offset s = tree->last; s-- > tree->first;) backward(Supernode<W>(L_, s), own_y);
     });
   }
 
-  auto in_x() const {
+  auto target_in_x() const {
     return [this](int column, Offset row) { return at(column, row); };
   }
 
@@ -336,7 +336,7 @@ class BlasSolve {
   BlasSolve(const SupernodalFactor& L, Offset columns)
       : L_(L),
         x_(L, columns),
-        below_(static_cast<std::size_t>(L.most_rows() * columns * W)),
+        below_(static_cast<std::size_t>(L.max_rows() * columns * W)),
         ld_(static_cast<int>(L.size)) {}
 
   void solve(std::span<double> X, Offset columns) {
@@ -356,7 +356,7 @@ class BlasSolve {
 
   /// Calls visit(entry of y, entry of `below_`) for each row below the supernode.
   template <class Visit>
-  void each_below(const Supernode<W>& s, const Visit& visit) {
+  void for_each_row_below(const Supernode<W>& s, const Visit& visit) {
     const Offset below = s.rows - s.columns;
     for (int c = 0; c < columns_; ++c)
       for (Offset r = 0; r < below; ++r)
@@ -370,13 +370,13 @@ class BlasSolve {
     if (below == 0) return;
     (W == 1 ? dgemm_ : zgemm_)("N", "N", &below, &columns_, &own, one, s.at(s.columns, 0), &rows, x_.at(0, s.first),
                                &ld_, zero, below_.data(), &below);
-    each_below(s, [](double& y, double product) { y -= product; });
+    for_each_row_below(s, [](double& y, double product) { y -= product; });
   }
 
   void backward(const Supernode<W>& s) {
     const int own = static_cast<int>(s.columns), rows = static_cast<int>(s.rows), below = rows - own;
     if (below > 0) {
-      each_below(s, [](double y, double& gathered) { gathered = y; });
+      for_each_row_below(s, [](double y, double& gathered) { gathered = y; });
       (W == 1 ? dgemm_ : zgemm_)("C", "N", &own, &columns_, &below, minus, s.at(s.columns, 0), &rows, below_.data(),
                                  &below, one, x_.at(0, s.first), &ld_);
     }
@@ -391,7 +391,7 @@ class BlasSolve {
 };
 
 template <int W>
-void by_width(const SupernodalFactor& L, std::span<double> X, Offset columns) {
+void solve_by_blas(const SupernodalFactor& L, std::span<double> X, Offset columns) {
   BlasSolve<W> solver(L, std::min(columns, at_once));
   const Offset size = L.size * W;
   const BlasBuffer buffer;
@@ -404,7 +404,7 @@ void by_width(const SupernodalFactor& L, std::span<double> X, Offset columns) {
 }  // namespace
 
 void blas_solve(const SupernodalFactor& L, std::span<double> X, Offset columns) {
-  (L.is_complex ? by_width<2> : by_width<1>)(L, X, columns);
+  (L.is_complex ? solve_by_blas<2> : solve_by_blas<1>)(L, X, columns);
 }
 
 }  // namespace ahm

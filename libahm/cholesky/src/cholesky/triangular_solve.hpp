@@ -23,7 +23,7 @@ void narrow_solve(const SupernodalFactor& L, std::span<double> X, Offset columns
 /// Largest number of entries of a factor for `block_solve`. Such factors fit into the cache of a core, and their supernodes are so
 /// small that the BLAS spends its time on calls and copies: `block_solve` takes 0.4 to 0.9 of the time of `blas_solve`. For larger
 /// complex factors the BLAS is faster.
-inline constexpr Offset most_block_numbers = 1 << 19;
+inline constexpr Offset max_block_entries = 1 << 19;
 
 /// X <- K^-1 X for any number of columns, column major; complex vectors as interleaved pairs. The result for a column does not depend
 /// on the other columns. Skips supernodes whose rows are zero in the forward solve.

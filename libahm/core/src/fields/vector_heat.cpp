@@ -17,21 +17,21 @@ namespace {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// The points with prescribed values, joined into one source.
-struct Givers {
+struct PrescribedPoints {
   Source all;
   double heat;  ///< right-hand side for a weight of 1
 
-  Givers(const LogMapSolver& solver, Source joined) : all(std::move(joined)) {
+  PrescribedPoints(const LogMapSolver& solver, Source joined) : all(std::move(joined)) {
     check_source(all, solver.graph());
     heat = source_heat(solver.graph(), solver.operators(), all.vertices());
   }
-  /// Calls put(vertex, point, b, axes) for every sample. `axes` may be empty.
-  template <class Put>
-  void for_samples(const Put& put) const {
+  /// Calls visit(vertex, point, b, axes) for every sample. `axes` may be empty.
+  template <class Visit>
+  void for_samples(const Visit& visit) const {
     const std::size_t d = static_cast<std::size_t>(all.dimension().value_or(0)), n = all.vertices().size();
     for (std::size_t k = 0; k < n; ++k)
-      put(static_cast<std::size_t>(all.vertices()[k].index), static_cast<std::size_t>(all.place(k).point),
-          heat * all.weights()[k], all.axes().subspan(k * d * d, d * d));
+      visit(static_cast<std::size_t>(all.vertices()[k].index), static_cast<std::size_t>(all.place(k).point),
+            heat * all.weights()[k], all.axes().subspan(k * d * d, d * d));
   }
 };
 
@@ -78,13 +78,14 @@ struct Blend {
   bool reached(std::size_t i) const { return heat[i] >= least; }
 };
 
-Blend blend_scalars(const LogMapSolver& solver, const Givers& givers, std::span<const double> values) {
+Blend blend_scalars(const LogMapSolver& solver, const PrescribedPoints& points_with_values,
+                    std::span<const double> values) {
   const auto n = static_cast<std::size_t>(solver.graph().size());
   double largest = 0;
   for (double v : values) largest = std::max(largest, std::abs(v));
   const double unit = largest > 0 ? std::ldexp(1.0, -std::ilogb(largest)) : 1.0;
   std::vector<double> columns(2 * n, 0.0);
-  givers.for_samples([&](std::size_t vertex, std::size_t point, double b, auto) {
+  points_with_values.for_samples([&](std::size_t vertex, std::size_t point, double b, auto) {
     columns[vertex] += b * (values[point] * unit);
     columns[n + vertex] += b;
   });
@@ -101,10 +102,10 @@ Blend blend_scalars(const LogMapSolver& solver, const Givers& givers, std::span<
 VertexField extend(const LogMapSolver& solver, Source points, std::size_t count, std::span<const double> values) {
   return detail::with_memory_check("extending scalars", [&] {
     check_values(values, count, "values");
-    const Givers givers(solver, std::move(points));
-    Blend blend = blend_scalars(solver, givers, values);
+    const PrescribedPoints points_with_values(solver, std::move(points));
+    Blend blend = blend_scalars(solver, points_with_values, values);
     VertexField field{1, std::move(blend.values), {}};
-    finish(field, solver, givers.all, [&](std::size_t i) { return blend.reached(i); });
+    finish(field, solver, points_with_values.all, [&](std::size_t i) { return blend.reached(i); });
     return field;
   });
 }
@@ -114,23 +115,24 @@ VertexField transport(const LogMapSolver& solver, Source points, std::size_t cou
     const auto n = static_cast<std::size_t>(solver.graph().size()),
                d = static_cast<std::size_t>(solver.graph().dimension());
     check_values(vectors, count * d, "vectors");
-    const Givers givers(solver, std::move(points));
+    const PrescribedPoints points_with_values(solver, std::move(points));
 
     // Solve with A for the lengths ([SSC19] Alg. 1, steps II and III).
     std::vector<double> lengths;
     for (std::size_t k = 0; k < count; ++k) lengths.push_back(length(vectors.subspan(k * d, d)));
-    const Blend blend = blend_scalars(solver, givers, lengths);
+    const Blend blend = blend_scalars(solver, points_with_values, lengths);
 
     // Solve with B for the directions (step I).
     const double longest = lengths.empty() ? 0.0 : *std::max_element(lengths.begin(), lengths.end());
     VertexField field{static_cast<int>(d), std::vector<double>(n * d, 0.0), {}};
-    givers.for_samples([&](std::size_t vertex, std::size_t point, double b, std::span<const double> U) {
+    points_with_values.for_samples([&](std::size_t vertex, std::size_t point, double b, std::span<const double> U) {
       if (!(longest > 0)) return;
-      const std::span given = vectors.subspan(point * d, d);
+      const std::span vector_of_point = vectors.subspan(point * d, d);
       for (std::size_t c = 0; c < d; ++c) {
-        double turned = U.empty() ? given[c] / longest : 0;
-        for (std::size_t a = 0; a < d && !U.empty(); ++a) turned += U[c * d + a] * (given[a] / longest);
-        field.values[vertex * d + c] += b * turned;
+        double component_in_frame = U.empty() ? vector_of_point[c] / longest : 0;
+        for (std::size_t a = 0; a < d && !U.empty(); ++a)
+          component_in_frame += U[c * d + a] * (vector_of_point[a] / longest);
+        field.values[vertex * d + c] += b * component_in_frame;
       }
     });
     solver.operators().solve_vector(field.values, 1, solver.options().threads);
@@ -141,7 +143,7 @@ VertexField transport(const LogMapSolver& solver, Source points, std::size_t cou
       reached[i] = blend.reached(i) && (norm >= blend.least || longest == 0);
       for (double& component : vector) component = norm > 0 ? component / norm * blend.values[i] : 0.0;
     }
-    finish(field, solver, givers.all, [&](std::size_t i) { return reached[i] != 0; });
+    finish(field, solver, points_with_values.all, [&](std::size_t i) { return reached[i] != 0; });
     return field;
   });
 }

@@ -54,9 +54,9 @@ std::size_t check_vertex(const TangentGraph& graph, Index i) {
 }
 
 /// Matches edges with their reverse edges. The object keeps its buffers from vertex to vertex.
-class PairCheck {
+class ReverseEdgeCheck {
  public:
-  explicit PairCheck(const TangentGraph& graph) : graph_(graph), layout_(graph.transport_layout()) {}
+  explicit ReverseEdgeCheck(const TangentGraph& graph) : graph_(graph), layout_(graph.transport_layout()) {}
 
   /// Checks the edges between i and all neighbors j of smaller degree, or of the same degree and larger number. So the time is not
   /// quadratic in the degrees.
@@ -96,12 +96,12 @@ class PairCheck {
     std::size_t backward = 0;
     for (std::size_t r = 0; r < to.degree(); ++r) backward += to.neighbors[r] == i ? 1 : 0;
     for (const std::size_t e : edges) {
-      bool weight_seen = false, matched = false;
+      bool has_weight = false, matched = false;
       for (std::size_t r = 0; r < to.degree() && !matched; ++r) {
         if (to.neighbors[r] != i || used_[r] != 0) continue;
         const double w = weights_[e];
         if (std::abs(to.weights[r] - w) > weight_tolerance * std::abs(w)) continue;
-        weight_seen = true;
+        has_weight = true;
         const Transport R_ji(layout_, transports_.data() + e * layout_.width());
         if (!(R_ji.distance_from_inverse(to.transport(r)) <= transport_tolerance)) continue;
         matched = true;
@@ -109,8 +109,8 @@ class PairCheck {
       }
       if (!matched)
         throw InvalidGraph(edge_name(i, j) +
-                           (weight_seen ? ": the transports of the two directions are not inverse to each other"
-                                        : ": the reverse edge is missing or has another weight"));
+                           (has_weight ? ": the transports of the two directions are not inverse to each other"
+                                       : ": the reverse edge is missing or has another weight"));
     }
     if (edges.size() != backward)
       throw InvalidGraph(edge_name(j, i) + ": " + std::to_string(backward) + " edges, but " +
@@ -126,7 +126,7 @@ class PairCheck {
 };
 
 /// Throws an error for an edge without a reverse edge. Called only if there is one.
-[[noreturn]] void name_edge_without_reverse(const TangentGraph& graph) {
+[[noreturn]] void throw_missing_reverse(const TangentGraph& graph) {
   for (Index i = 0; i < graph.size(); ++i) {
     const Star star = graph.star(i);
     const std::vector<Index> neighbors(star.neighbors.begin(), star.neighbors.end());
@@ -148,12 +148,12 @@ void check_edges(const TangentGraph& graph, unsigned threads) {
     edges += sum;
   });
   detail::parallel_chunks(graph.size(), chunk, threads, [&](Offset begin, Offset end) {
-    PairCheck pairs(graph);
+    ReverseEdgeCheck pairs(graph);
     std::size_t sum = 0;
     for (Offset i = begin; i < end; ++i) sum += pairs.at(static_cast<Index>(i));
     checked += sum;
   });
-  if (checked != edges) name_edge_without_reverse(graph);
+  if (checked != edges) throw_missing_reverse(graph);
 }
 
 }  // namespace

@@ -134,7 +134,7 @@ double mean_mass(const TangentGraph& graph) {
 
 /// Largest relative loss of heat. It acts like masses that are larger by this factor: distances change by half of it, and on flat
 /// graphs not at all.
-constexpr double most_loss = 1e-6;
+constexpr double max_heat_loss = 1e-6;
 
 /// The symbolic analyses of A and B. A complex B has the pattern of A and shares its analysis.
 class Analysis {
@@ -160,7 +160,7 @@ std::vector<double> scaled_masses(const TangentGraph& graph, double scaling) {
   return masses;
 }
 
-double farthest_from_one(std::span<const double> values) {
+double max_difference_from_one(std::span<const double> values) {
   double worst = 0;
   for (const double x : values) worst = std::isfinite(x) ? std::max(worst, std::abs(x - 1)) : INFINITY;
   return worst;
@@ -169,14 +169,14 @@ double farthest_from_one(std::span<const double> values) {
 /// Checks the residual and the conservation of heat with one solve.
 /// @param masses  masses times c
 void check_A(const CholeskyFactor& A, const SparseUpper& matrix, std::vector<double> masses, unsigned threads) {
-  check_conservation(farthest_from_one(A.checked_solve(matrix, std::move(masses), name_A, threads)));
+  check_conservation(max_difference_from_one(A.checked_solve(matrix, std::move(masses), name_A, threads)));
 }
 
 /// A and B with one solver each: CholeskyFactor or ConjugateGradient.
 template <class Solver>
-class SystemOf final : public HeatSystem {
+class SolverSystem final : public HeatSystem {
  public:
-  SystemOf(std::vector<double> tau, double scaling) : HeatSystem(std::move(tau), scaling) {}
+  SolverSystem(std::vector<double> tau, double scaling) : HeatSystem(std::move(tau), scaling) {}
 
   void solve_A(std::span<double> X, Offset columns, unsigned threads) const override { A->solve(X, columns, threads); }
   void solve_B(std::span<double> X, Offset columns, unsigned threads) const override { B->solve(X, columns, threads); }
@@ -192,9 +192,9 @@ class SystemOf final : public HeatSystem {
 };
 
 /// Factors A at once, and B on the first solve with it. Keeps the matrices until then.
-class HeatFirstSystem final : public HeatSystem {
+class DeferredSystem final : public HeatSystem {
  public:
-  HeatFirstSystem(const TangentGraph& graph, std::vector<double> tau, const FactorOptions& options)
+  DeferredSystem(const TangentGraph& graph, std::vector<double> tau, const FactorOptions& options)
       : HeatSystem(std::move(tau), mass_scaling(mean_mass(graph))),
         dimension_(graph.dimension()),
         masses_(scaled_masses(graph, scaling_)),
@@ -205,7 +205,7 @@ class HeatFirstSystem final : public HeatSystem {
 
   void solve_A(std::span<double> X, Offset columns, unsigned threads) const override { A_.solve(X, columns, threads); }
   void solve_B(std::span<double> X, Offset columns, unsigned threads) const override {
-    std::call_once(made_, [&] {
+    std::call_once(factored_, [&] {
       check();
       B_.emplace(matrices_.B, analysis_->of_B(matrices_.B, dimension_), name_B, threads_);
       B_->check(matrices_.B, name_B, threads_);
@@ -221,7 +221,7 @@ class HeatFirstSystem final : public HeatSystem {
 
  private:
   int dimension_;
-  mutable std::once_flag checked_, made_;
+  mutable std::once_flag checked_, factored_;
   mutable std::vector<double> masses_;
   mutable AssembledOperators matrices_;
   mutable std::optional<Analysis> analysis_;
@@ -253,11 +253,11 @@ double mass_scaling(double mean_mass) {
 double conservation_residual(const HeatSystem& system, const TangentGraph& graph, Index own) {
   std::vector<double> heat = scaled_masses(graph, system.scaling());
   system.solve_A(heat, 1);
-  return farthest_from_one(std::span(heat).first(static_cast<std::size_t>(own)));
+  return max_difference_from_one(std::span(heat).first(static_cast<std::size_t>(own)));
 }
 
 void check_conservation(double lost) {
-  if (!(lost <= most_loss))
+  if (!(lost <= max_heat_loss))
     throw NotPositiveDefinite("heat_lost",
                               "the diffusion loses heat (relative loss " + detail::number(lost) +
                                   "): its time is too long, or the sizes of faces and edges differ too much",
@@ -282,9 +282,9 @@ void check_diffusion(const TangentGraph& graph, const FactorOptions& options) {
 
 std::unique_ptr<const HeatSystem> factored_system(const TangentGraph& graph, std::vector<double> tau,
                                                   const FactorOptions& options) {
-  std::unique_ptr<SystemOf<CholeskyFactor>> system;
+  std::unique_ptr<SolverSystem<CholeskyFactor>> system;
   AssembledOperators matrices;
-  std::tie(system, matrices) = begin<SystemOf<CholeskyFactor>>(graph, std::move(tau), options);
+  std::tie(system, matrices) = begin<SolverSystem<CholeskyFactor>>(graph, std::move(tau), options);
   detail::Stopwatch stopwatch;
   options.progress.step("analyze", 0.0);
 
@@ -312,14 +312,14 @@ std::unique_ptr<const HeatSystem> factored_system(const TangentGraph& graph, std
   return system;
 }
 
-std::unique_ptr<const HeatSystem> heat_first_system(const TangentGraph& graph, std::vector<double> tau,
-                                                    const FactorOptions& options) {
-  return std::make_unique<HeatFirstSystem>(graph, std::move(tau), options);
+std::unique_ptr<const HeatSystem> deferred_system(const TangentGraph& graph, std::vector<double> tau,
+                                                  const FactorOptions& options) {
+  return std::make_unique<DeferredSystem>(graph, std::move(tau), options);
 }
 
 std::unique_ptr<const HeatSystem> iterative_system(const TangentGraph& graph, std::vector<double> tau,
                                                    const FactorOptions& options) {
-  auto [system, matrices] = begin<SystemOf<ConjugateGradient>>(graph, std::move(tau), options);
+  auto [system, matrices] = begin<SolverSystem<ConjugateGradient>>(graph, std::move(tau), options);
   system->A.emplace(matrices.A, name_A);
   system->B.emplace(matrices.B, name_B);
   check_conservation(conservation_residual(*system, graph, graph.size()));

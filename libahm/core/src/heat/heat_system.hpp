@@ -75,8 +75,8 @@ std::unique_ptr<const HeatSystem> factored_system(const TangentGraph& graph, std
 /// As `factored_system`, but the first `solve_B` checks the factor of A and factors B. If the caller never solves with B, it must call
 /// `check` before it uses results of A. The statistics are empty.
 /// @throws as `HeatOperators`; the first `solve_B` throws the same errors
-std::unique_ptr<const HeatSystem> heat_first_system(const TangentGraph& graph, std::vector<double> tau,
-                                                    const FactorOptions& options);
+std::unique_ptr<const HeatSystem> deferred_system(const TangentGraph& graph, std::vector<double> tau,
+                                                  const FactorOptions& options);
 
 /// A system that solves by conjugate gradients, for block graphs only. Errors are relative to the largest value of a solution, which is
 /// accurate enough for the thin bands of a march.

@@ -111,7 +111,7 @@ class Alone final : public MarchTeam {
   double reach() const override { return iterative_ ? 8 : std::numeric_limits<double>::infinity(); }
   std::unique_ptr<const HeatSystem> system(BandPart part, const HeatOptions& options) override {
     return (iterative_    ? iterative_system
-            : heat_first_ ? heat_first_system
+            : heat_first_ ? deferred_system
                           : factored_system)(part.graph, std::move(part.tau), options.factor());
   }
 

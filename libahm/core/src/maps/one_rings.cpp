@@ -314,7 +314,7 @@ Wavefront::OneRings::OneRings(const TangentGraph& graph, std::vector<std::uint8_
       if (!own.empty()) curvatures_[i] = curvature_of(own);
     }
   });
-  begin_ = detail::starts_of(std::move(begin_));
+  begin_ = detail::begin_of_groups(std::move(begin_));
   corners_.reserve(static_cast<std::size_t>(begin_.back()));
   for (std::vector<Corner>& part : parts) {
     corners_.insert(corners_.end(), part.begin(), part.end());

@@ -188,7 +188,7 @@ class GltfReader {
 
   /// Merges vertices at equal positions: glTF has a separate vertex for every texture coordinate and normal of a point.
   void join_seams() {
-    const detail::Welded welded = detail::weld(g_.points);
+    const detail::MergedPoints welded = detail::weld(g_.points);
     for (std::size_t k = 0; k < welded.first.size(); ++k) {
       g_.points[k] = g_.points[welded.first[k]];
       if (!g_.colors.empty()) g_.colors[k] = g_.colors[welded.first[k]];

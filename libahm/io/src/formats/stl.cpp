@@ -86,7 +86,7 @@ Geometry read(const Input& in) {
   g.format = binary ? "STL binary" : "STL text";
   check_vertex_count(in, corners.size());
   if (corners.empty()) fail(in, "it contains no triangles");
-  detail::Welded welded = detail::weld(corners);
+  detail::MergedPoints welded = detail::weld(corners);
   for (const Index corner : welded.first) g.points.push_back(corners[corner]);
   g.face_vertices = std::move(welded.number);
   for (std::size_t f = 0; 3 * f <= corners.size(); ++f) g.face_begin.push_back(static_cast<Offset>(3 * f));

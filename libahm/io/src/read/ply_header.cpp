@@ -192,8 +192,7 @@ PlyHeader parse_ply_header(const Input& in) {
       if (header.elements.empty()) fail_at_line(in, lines.number, "a property before the first 'element' line");
       header.elements.back().properties.push_back(parse_property(in, lines.number, words));
     } else if (header.elements.empty() || (has_format && header.format == PlyFormat::ascii)) {
-      ++header
-            .ignored_lines;  // probably a comment without its keyword; in text, a misspelled property causes an error later
+      ++header.ignored_lines;  // a comment without its keyword; a misspelled property causes an error later
     } else {
       fail_at_line(in, lines.number, "unexpected " + in_quotes(words[0]) + " in the PLY header");
     }

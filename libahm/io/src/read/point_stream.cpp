@@ -11,7 +11,7 @@
 namespace ahm::io {
 namespace {
 
-constexpr std::size_t block = std::size_t{1} << 16;  // points
+constexpr std::size_t points_per_block = std::size_t{1} << 16;  // points
 
 Vec3 load_point(const PointRecords& r, const char* bytes) {
   Vec3 point;
@@ -29,9 +29,9 @@ Vec3 load_point(const PointRecords& r, const char* bytes) {
 /// Reads fixed-size records of a compressed file and passes their points to `take`.
 bool unpack(const ByteStream& file, const PointRecords& r, const TakePoint& take) {
   ByteStream bytes(file, r.begin);
-  std::string buffer(block * r.stride, '\0');
+  std::string buffer(points_per_block * r.stride, '\0');
   for (std::uint64_t i = 0; i < r.count;) {
-    const std::size_t wanted = std::min<std::uint64_t>(block, r.count - i);
+    const std::size_t wanted = std::min<std::uint64_t>(points_per_block, r.count - i);
     if (bytes.read(std::span(buffer).first(wanted * r.stride)) < wanted * r.stride) fail_short(file.head(), i, r.count);
     for (std::size_t k = 0; k < wanted; ++k) take(load_point(r, buffer.data() + k * r.stride));
     i += wanted;
@@ -85,7 +85,7 @@ PointStream::PointStream(const std::filesystem::path& path, const std::filesyste
   };
   const TakePoint take = [&](const Vec3& point) {
     points.push_back(point);
-    if (points.size() == block) write();
+    if (points.size() == points_per_block) write();
   };
   const bool has_normals = records ? unpack(bytes, *records, take) : format.take_points(bytes, take);
   write();

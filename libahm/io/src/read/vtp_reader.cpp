@@ -241,7 +241,8 @@ class VtpReader {
       fail(in_, what + " has the type " + in_quotes(node.attribute("type").value()) + ", which is not supported");
     VtkArray array{node.attribute("Name").value(), whole(node, "NumberOfComponents", 1), type->whole, {}};
     if (width != 0 && array.width != width)
-      fail(in_, what + " must have components: " + std::to_string(width) + ", found: " + std::to_string(array.width));
+      fail(in_, what + " has the wrong number of components: expected " + std::to_string(width) + ", found " +
+                    std::to_string(array.width));
     const std::string format = node.attribute("format").as_string("ascii");
     if (format == "ascii")
       array.values = read_text(node, *type, what);

@@ -1,8 +1,8 @@
 "use strict";
-// Fewer triangles, for turning a large mesh where drawing all of them takes long.
+// Coarse meshes of large meshes, for a smooth display while the camera moves.
 
-// The vertices of each cell of a raster are taken for the first of them; triangles with corners in three cells remain, each
-// triple once. @param cells  along the longest side of the box
+// Merges the vertices in each cell of a raster into the first one. Keeps triangles with corners in three cells, each triple once.
+// @param cells  number of cells along the longest side of the bounding box
 Ahm.coarse_triangles = function (surface, cells) {
   const p = surface.positions, t = surface.triangles, n = p.length / 3;
   const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];

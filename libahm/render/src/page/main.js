@@ -1,13 +1,13 @@
 "use strict";
-// Starts the page: with the data that stands in it, or with a server behind it.
+// Starts the page with embedded data, or with a server.
 
-// Requests to the server. Of maps one is under way at a time: a newer one takes its place, or waits for it while the source
-// is dragged, so that the picture follows.
+// Requests to the server. Only one map is requested at a time. A newer request replaces it. While the source is dragged, the newer request
+// waits instead, so that the picture follows.
 Ahm.Server = class {
   constructor() {
     this.client = Array.from(crypto.getRandomValues(new Uint8Array(8)), (b) => b.toString(16).padStart(2, "0")).join("");
-    this.number = 0;  // of maps asked for
-    this.sent = 0;    // requests, which may overtake each other
+    this.number = 0;  // number of requested maps
+    this.sent = 0;    // number of requests, which may arrive in a different order
   }
 
   async get(name) {
@@ -27,11 +27,11 @@ Ahm.Server = class {
     try {
       return (await answer.json()).error;
     } catch (error) {
-      return "the server answers " + answer.status;
+      return "the server returned status " + answer.status;
     }
   }
 
-  // The newest map, or null where a newer request took its place.
+  // Requests a map. Null if a newer request replaced this one.
   async map(name, request) {
     const number = ++this.number;
     if (this.abort) this.abort.abort();
@@ -53,8 +53,8 @@ Ahm.Viewer = class {
     this.stage = new Ahm.Stage(this.element("canvas"), surface);
     this.panel = new Ahm.Panel(this.stage);
     this.tool = "map";
-    this.picked = [];  // of a path or a stroke
-    this.source = null;  // of the last map from a point
+    this.picked = [];  // picked points of a path or a stroke
+    this.source = null;  // source of the last map that starts at a point
     document.body.classList.toggle("still", !server);
     this.listen();
   }
@@ -94,7 +94,7 @@ Ahm.Viewer = class {
   move(event) {
     this.pointer = this.at(event);
     if (this.pointing || (event.buttons !== 0 && !this.dragging)) return;
-    this.pointing = true;  // once per picture
+    this.pointing = true;  // at most once per frame
     requestAnimationFrame(() => {
       this.pointing = false;
       const hit = this.stage.pick(...this.pointer);
@@ -110,7 +110,7 @@ Ahm.Viewer = class {
     if (!this.following) this.follow();
   }
 
-  // Maps of where the source is being dragged, one after the other.
+  // Requests maps for the position of the dragged source, one after the other.
   async follow() {
     this.following = true;
     while (this.wanted) {
@@ -159,20 +159,20 @@ Ahm.Viewer = class {
     act();
   }
 
-  // What follows needs the server.
+  // The following methods require the server.
 
   settings() {
     const text = (id) => this.element(id).value.trim(), number = (id) => {
       if (text(id) === "") return undefined;
       const x = Number(text(id));
-      if (!(x > 0 && Number.isFinite(x))) throw new Error(id.replace(/_/g, "-") + ": '" + text(id) + "' is no positive number");
+      if (!(x > 0 && Number.isFinite(x))) throw new Error(id.replace(/_/g, "-") + ": '" + text(id) + "' is not a positive number");
       return x;
     };
     const out = { method: text("method"), radius: number("radius") ?? null };
     if (out.method === "heat") Object.assign(out, { variant: text("variant"), t_coef: number("t_coef") });
     if (text("u_axis") !== "") {
       out.u_axis = text("u_axis").split(/[\s,]+/).map(Number);
-      if (out.u_axis.length !== 3 || !out.u_axis.every(Number.isFinite)) throw new Error("u axis: '" + text("u_axis") + "' is no direction X,Y,Z");
+      if (out.u_axis.length !== 3 || !out.u_axis.every(Number.isFinite)) throw new Error("u axis: '" + text("u_axis") + "' is not a direction X,Y,Z");
     }
     return out;
   }
@@ -182,7 +182,7 @@ Ahm.Viewer = class {
     try {
       await work();
     } catch (error) {
-      if (error.status !== 409) this.panel.say(error.message, true);  // 409: a newer request took its place
+      if (error.status !== 409) this.panel.say(error.message, true);  // 409: a newer request replaced it
     } finally {
       this.busy--;
     }
@@ -210,7 +210,8 @@ Ahm.Viewer = class {
     if (this.server) this.offer(map.command, this.made_map);
   }
 
-  // The command line of what is seen, and what it is: what an export asks for.
+  // Shows the command line that reproduces the current result, and enables its export.
+  // @param made  {what, request} of the result, for `export_made`
   offer(command, made) {
     const formats = this.formats[made.what] || [];
     this.element("command").textContent = command;
@@ -226,13 +227,13 @@ Ahm.Viewer = class {
   async ask_path(hit) {
     this.picked = this.picked.length === 1 ? [this.picked[0], hit] : [hit];
     this.stage.set_marks({ dots: this.picked.map((h) => h.position) });
-    if (this.picked.length === 1) return this.panel.say("and where to?");
+    if (this.picked.length === 1) return this.panel.say("click the end of the path");
     await this.attempt(async () => {
       const [from, to] = this.picked;
       const answer = await (await this.server.post("path", { from: from.source, to: to.source })).json();
       this.stage.set_marks({ curve: answer.points, dots: [answer.points[0], answer.points[answer.points.length - 1]] });
       this.offer(answer.command, { what: "path", request: { from: from.source, to: to.source } });
-      this.panel.say("a path, " + Ahm.number(this.panel.length_of(answer.length)) + " long");
+      this.panel.say("path of length " + Ahm.number(this.panel.length_of(answer.length)));
     });
   }
 
@@ -256,7 +257,7 @@ Ahm.Viewer = class {
     });
   }
 
-  // With other settings.
+  // Repeats the last request with the current settings.
   ask_again() {
     if (!this.request) return;
     return this.request.points ? this.ask_stroke(this.request.points) : this.ask_map(this.request.source);
@@ -272,10 +273,10 @@ Ahm.Viewer = class {
     this.stage.set_marks({ curve: answer.points, pieces: answer.pieces });
     this.panel.say("");
     this.offer(answer.command, { what: "coverage", request: request });
-    this.element("tool_hint").textContent = Ahm.number(this.panel.length_of(answer.length), 4) + " long, " + (100 * answer.covered).toFixed(1) + " % on the surface";
+    this.element("tool_hint").textContent = "length " + Ahm.number(this.panel.length_of(answer.length), 4) + ", " + (100 * answer.covered).toFixed(1) + " % on the surface";
   }
 
-  // On a map from a point.
+  // Draws the image on the current map, which must start at a point.
   place_decal() {
     const width = this.stage.surface.scale ? 0.5 * Math.pow(2, Number(this.element("decal_size").value)) : 1;
     const turn = Number(this.element("decal_turn").value), { stage, decal } = this;
@@ -301,7 +302,7 @@ Ahm.Viewer = class {
       this.decal = { texture: texture, file: reader.result.replace(/^[^,]*,/, ""), name: /^[\w.-]+$/.test(name) ? name : "'" + name.replace(/'/g, "'\\''") + "'" };
       this.place_decal();
     };
-    image.onerror = () => this.panel.say(file.name + " is no image that this browser reads", true);
+    image.onerror = () => this.panel.say(file.name + " is not an image that this browser can read", true);
     reader.onload = () => { image.src = reader.result; };
     reader.onerror = () => this.panel.say(file.name + " cannot be read", true);
     reader.readAsDataURL(file);
@@ -312,9 +313,9 @@ Ahm.Viewer = class {
     this.picked = [];
     for (const button of this.element("tool").children) button.setAttribute("aria-checked", button.dataset.tool === name);
     const hints = {
-      map: "click a point, or drag the red one", path: "click two points: the shortest path between them",
-      stroke: "draw a curve on the surface", decal: "an image on the map; drag the red point to move it",
-      coverage: "a tool path around the point that you click"
+      map: "click a point, or drag the red point", path: "click two points for the shortest path between them",
+      stroke: "draw a curve on the surface", decal: "choose an image; drag the red point to move it",
+      coverage: "click a point for a tool path around it"
     };
     this.element("tool_hint").textContent = hints[name];
     this.element("decal_options").hidden = name !== "decal";
@@ -322,7 +323,7 @@ Ahm.Viewer = class {
     this.stage.set_marks(this.stage.map || {});
     if (this.made_map) this.offer(this.stage.map.command, this.made_map);
     this.place_decal();
-    // These lie on a map from a point.
+    // Decals and coverage paths require a map that starts at a point.
     if ((name === "decal" || name === "coverage") && this.request && this.request.points) this.ask_map(this.source || this.request.points[0]);
     else if (name === "coverage") this.attempt(() => this.ask_coverage());
   }
@@ -371,7 +372,7 @@ Ahm.Viewer = class {
     await this.ask_map(info.source || this.middle());
   }
 
-  // What stands in the middle of the picture, or near it.
+  // The surface point at the center of the picture, or near it, as a source.
   middle() {
     const stage = this.stage, { width, height } = stage;
     for (let away = 0; away < 0.5; away += 0.05)

@@ -1,7 +1,7 @@
 "use strict";
-// What lies on the surface: the source with its axes, dots, and curves as ribbons of constant width on the screen.
+// Marks on the surface: the source with its axes, dots, and curves as ribbons of constant width on the screen.
 
-// A red ball and an arrow along each axis.
+// The source: a red sphere, and an arrow along each axis.
 Ahm.make_source = function (axes, ink) {
   const group = new THREE.Group();
   const red = new THREE.MeshBasicMaterial({ color: 0xe1141e });
@@ -27,7 +27,7 @@ Ahm.ribbon_material = (viewport) => new THREE.ShaderMaterial({
     uniform vec2 viewport;
     uniform float width;
     void main() {
-      // A little nearer than it is, or a bulging surface would swallow it.
+      // Slightly nearer to the camera, so that a convex surface does not hide the curve.
       vec4 a = projectionMatrix * vec4(0.995 * (modelViewMatrix * vec4(position, 1.0)).xyz, 1.0);
       vec4 b = projectionMatrix * vec4(0.995 * (modelViewMatrix * vec4(other, 1.0)).xyz, 1.0);
       vec2 way = (b.xy / b.w - a.xy / a.w) * viewport;
@@ -38,7 +38,7 @@ Ahm.ribbon_material = (viewport) => new THREE.ShaderMaterial({
   fragmentShader: "void main() { gl_FragColor = vec4(0.88, 0.08, 0.12, 1.0); }"
 });
 
-// `points`: triples; `pieces`: where each begins.
+// A curve. `points`: positions; `pieces`: index of the first point of each piece.
 Ahm.make_ribbon = function (points, pieces, material) {
   const segments = [];
   pieces.forEach((begin, k) => {

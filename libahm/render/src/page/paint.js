@@ -1,6 +1,6 @@
 "use strict";
-// The colors: one shader for meshes, whose pattern is computed at every pixel from interpolated (u, v), and two for discs,
-// each with the gradient of (u, v) along it.
+// The shaders. One draws meshes: it computes the pattern at every pixel from interpolated (u, v). Two draw discs, which have the gradient
+// of (u, v).
 Ahm.fields = ["polar", "grid", "cells", "distance", "none", "spread", "quality", "normals", "colors"];
 
 Ahm.make_uniforms = function (surface) {
@@ -10,12 +10,12 @@ Ahm.make_uniforms = function (surface) {
     pattern: { value: 4 }, sectors: { value: 24 }, ring_scale: { value: 1 }, largest_value: { value: 1 },
     pixel_size: { value: 1 }, hatch: { value: 1 }, largest_radius: { value: surface.largest_radius },
     pixels_per_unit: { value: 1 }, steepest: { value: 0 }, thin: { value: 1 },
-    decal: { value: blank }, decal_frame: { value: new THREE.Vector4(0, 0, 0, 0) }  // cos and sin over width and height
+    decal: { value: blank }, decal_frame: { value: new THREE.Vector4(0, 0, 0, 0) }  // cosine and sine divided by width and height
   };
 };
 
 (function () {
-  // Values beyond 1e29 stand for "none".
+  // Values beyond 1e29 mean that there is no value.
   const common = () => document.getElementById("palette").textContent + `
     uniform int pattern;
     uniform float sectors, ring_scale, largest_value, pixel_size, hatch;
@@ -31,7 +31,7 @@ Ahm.make_uniforms = function (surface) {
       vec4 texel = texture2D(decal, at);
       return mix(color, from_srgb(texel.rgb), texel.a);
     }
-    // dx, dy: changes over a pixel of (u, v, value).
+    // uvw: (u, v, value). dx, dy: its changes over a pixel.
     vec3 paint(vec3 uvw, vec3 dx, vec3 dy, vec3 normal, vec3 own, float trust) {
       if (pattern == 4) return with_decal(plain_color(), uvw.xy);
       if (pattern == 7) return from_srgb(0.5 + 0.5 * normal);
@@ -89,8 +89,8 @@ Ahm.make_uniforms = function (surface) {
       }`
   });
 
-  // A disc per point, tilted by its normal; where discs overlap, the nearest center wins. First only which disc it is, since
-  // a pixel is covered many times over; `splat_material` then paints each pixel once.
+  // A disc per point, tilted by its normal; of overlapping discs, the one with the nearest center is visible. The first pass stores only
+  // the number of the disc, because many discs cover a pixel. Then `splat_material` colors each pixel once.
   const on_disc = `
     float rise_of(vec2 offset, vec3 n) { return -dot(n.xy, offset) / max(n.z, 0.25); }
     float depth_of(vec3 center, float rise, float t, float radius) {
@@ -139,7 +139,7 @@ Ahm.make_uniforms = function (surface) {
       }`
   });
 
-  // Over the whole picture: what is known of a disc is looked up in textures.
+  // The second pass covers the whole picture. Textures contain the data of the discs.
   Ahm.splat_material = (uniforms) => new THREE.ShaderMaterial({
     uniforms: uniforms, extensions: { fragDepth: true },
     vertexShader: "varying vec2 ndc; void main() { ndc = position.xy; gl_Position = vec4(position.xy, 0.0, 1.0); }",
@@ -172,7 +172,7 @@ Ahm.make_uniforms = function (surface) {
         vec3 uvw = value.xyz, along = vec3(offset, rise);
         bool is_known = abs(uvw.x) < 1e29;
         float r = max(length(uvw.xy), 1e-6);
-        vec3 change_w = is_known && pattern == 3 ? (uvw.x * change_u + uvw.y * change_v) / r : vec3(0.0);  // of the distance
+        vec3 change_w = is_known && pattern == 3 ? (uvw.x * change_u + uvw.y * change_v) / r : vec3(0.0);  // gradient of the distance
         vec3 here = uvw + vec3(dot(change_u, along), dot(change_v, along), dot(change_w, along));
         vec2 tilt = -disc_normal.xy / max(disc_normal.z, 0.25);
         float pixel = disc_radius / disc_size;
@@ -183,7 +183,7 @@ Ahm.make_uniforms = function (surface) {
       }`
   });
 
-  // The pattern by itself, for the lower left corner: a wheel, or a bar from 0 upwards.
+  // The legend in the lower left corner: the pattern as a wheel, or a color bar from 0 upwards.
   Ahm.legend_material = (uniforms) => new THREE.ShaderMaterial({
     uniforms: uniforms, transparent: true,
     vertexShader: "varying vec2 at; void main() { at = position.xy; gl_Position = vec4(position.xy, 0.0, 1.0); }",

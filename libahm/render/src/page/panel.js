@@ -1,5 +1,5 @@
 "use strict";
-// The panel beside the picture: what is shown, what is told. It knows the stage and nothing of a server.
+// The panel next to the picture: what the picture shows, and the values under the pointer. Uses the stage, but no server.
 Ahm.Panel = class {
   constructor(stage) {
     this.stage = stage;
@@ -20,7 +20,7 @@ Ahm.Panel = class {
     this.stage.set_dark(is_dark);
   }
 
-  // The fields that there is something to show by; the first choice is the map's own.
+  // Enables the fields that the data supports. Selects the first one if the current field is disabled.
   offer_fields() {
     const { map, surface } = this.stage, select = this.element("field");
     const has = {
@@ -33,7 +33,7 @@ Ahm.Panel = class {
     return has;
   }
 
-  // @param wanted  the field to change to; none: as it is
+  // @param wanted  the new field; null: keep the current field
   show_map(map, wanted) {
     const stage = this.stage;
     stage.map = map;
@@ -76,7 +76,7 @@ Ahm.Panel = class {
     this.stage.redraw();
   }
 
-  // About six numbers beside the bar, at its lines.
+  // Labels the color bar with about six numbers, at its lines.
   label_bar(width) {
     const numbers = this.element("bar"), stage = this.stage;
     numbers.textContent = "";
@@ -93,7 +93,7 @@ Ahm.Panel = class {
     }
   }
 
-  // What is known of a row; null: nothing is under the pointer.
+  // Displays the values of a row. @param hit  the point under the pointer; null: none
   tell(hit) {
     this.told = hit;
     const { map, surface } = this.stage, put = (id, ...numbers) => this.put(this.element("at_" + id), numbers);
@@ -110,7 +110,7 @@ Ahm.Panel = class {
     put("spread", of("spread", row));
   }
 
-  // Words as they are; numbers of six digits, or as many as there is room for, and of all in the tooltip.
+  // Sets the text of an element: strings unchanged, numbers with up to six digits if they fit. The tooltip shows nine digits.
   put(element, values) {
     const text = (digits) => values.map((x) => typeof x === "string" ? x : Ahm.number(x, digits)).join(" ");
     element.title = text(9);

@@ -1,8 +1,8 @@
 "use strict";
-// What a ray from the eye meets first. All of the surface is tried: a few milliseconds for 200,000 triangles, and
-// nothing to be built before.
+// Picking: the first intersection of a ray from the eye with the surface. Tests all triangles or discs, which takes a few milliseconds
+// for 200,000 triangles and requires no search structure.
 
-// {triangle, weights, position} or null.
+// The first triangle that the ray hits: {triangle, weights, position}, or null.
 Ahm.pick_triangle = function (surface, origin, direction) {
   const p = surface.positions, t = surface.triangles, [ox, oy, oz] = origin, [dx, dy, dz] = direction;
   let best = Infinity, found = -1, found_v = 0, found_w = 0;
@@ -24,12 +24,13 @@ Ahm.pick_triangle = function (surface, origin, direction) {
     if (far > 1e-9 && far < best) best = far, found = k / 3, found_v = v, found_w = w;
   }
   if (found < 0) return null;
-  // To a millionth of the triangle, so that they can be read and copied.
+  // Weights are rounded to six digits, so that they can be read and copied.
   const short = (x) => Math.min(1, Math.max(0, Number(x.toFixed(6)))), v = short(found_v), w = Math.min(short(found_w), short(1 - v));
   return { triangle: found, weights: [short(1 - v - w), v, w], position: [ox + best * dx, oy + best * dy, oz + best * dz] };
 };
 
-// {point, position} of the disc met first: within its radius of the ray, the nearest to the ray of those not far behind.
+// The disc that the ray hits: {point, position}, or null. Of the first disc and those shortly behind it, the one with the center nearest
+// to the ray.
 Ahm.pick_disc = function (surface, origin, direction) {
   const p = surface.positions, discs = surface.discs, unit = surface.largest_radius / 255;
   const [ox, oy, oz] = origin, [dx, dy, dz] = direction, length2 = dx * dx + dy * dy + dz * dz;
@@ -53,7 +54,8 @@ Ahm.pick_disc = function (surface, origin, direction) {
   return { point: point, position: [p[3 * point], p[3 * point + 1], p[3 * point + 2]] };
 };
 
-// The place under a ray: the row nearest to it, and the source that it means to the server and to the command line.
+// The surface point that a ray hits: {row, vertex, position, source}, or null. `row` is the nearest row; `source` is the source for the
+// server and the command line.
 Ahm.pick = function (surface, origin, direction) {
   if (!surface.is_mesh) {
     const hit = Ahm.pick_disc(surface, origin, direction);

@@ -1,5 +1,5 @@
 "use strict";
-// A cloud as discs, in two passes: which disc is seen at a pixel, and then its color, once.
+// A cloud drawn as discs, in two passes: the first finds the visible disc at each pixel; the second computes its color once.
 Ahm.Splats = class {
   constructor(surface, uniforms) {
     const n = surface.points.length;
@@ -27,7 +27,7 @@ Ahm.Splats = class {
   }
 
   geometry(surface) {
-    const geometry = new THREE.BufferGeometry(), number = new Float32Array(this.count);  // whole numbers to 2^24
+    const geometry = new THREE.BufferGeometry(), number = new Float32Array(this.count);  // floats are exact up to 2^24
     for (let k = 0; k < this.count; ++k) number[k] = k;
     geometry.setAttribute("position", new THREE.BufferAttribute(surface.positions, 3));
     geometry.setAttribute("disc", new THREE.BufferAttribute(surface.discs, 4, true));
@@ -35,7 +35,7 @@ Ahm.Splats = class {
     return geometry;
   }
 
-  // Numbers by disc, `size` each from `first` on in steps of `stride`, as texels of four.
+  // Texels of four numbers, one texel per disc: `size` numbers of the array, from index `first` on with the given stride.
   spread(array, size, Type, stride, first) {
     const out = new Type(4 * this.columns * this.lines), step = stride || size, begin = first || 0;
     for (let k = 0; k < this.count; ++k)
@@ -66,7 +66,7 @@ Ahm.Splats = class {
     this.uniforms.values.value.needsUpdate = true;
   }
 
-  // The first pass. @param share  of the points
+  // The first pass. @param share  part of the points that is drawn, in (0, 1]
   draw(renderer, camera, share) {
     const size = renderer.getDrawingBufferSize(new THREE.Vector2());
     if (this.target.width !== size.x || this.target.height !== size.y) this.target.setSize(size.x, size.y);

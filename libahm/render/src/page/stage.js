@@ -1,5 +1,5 @@
 "use strict";
-// The picture: the surface with its map, marks, camera and legend. Drawn when something changed, never otherwise.
+// The picture: the surface with its map, marks, camera and legend. It is drawn only after changes.
 Ahm.Stage = class {
   constructor(canvas, surface) {
     this.canvas = canvas;
@@ -7,15 +7,15 @@ Ahm.Stage = class {
     this.map = null;
     this.field = "none";
     this.is_dark = false;
-    this.quality = 1;  // share of the points, or of the pixels, that are drawn while it moves
+    this.quality = 1;  // part of the points, or of the pixels, drawn while the camera moves
     this.renderer = new THREE.WebGLRenderer({ canvas: canvas, antialias: surface.is_mesh, preserveDrawingBuffer: true });
     this.renderer.autoClear = false;
     this.uniforms = Ahm.make_uniforms(surface);
     this.viewport = { value: new THREE.Vector2(1, 1) };
     this.scene = new THREE.Scene();
     this.object = this.make_object();
-    this.pieces = null;  // of torn triangles
-    this.coarse = null;  // the mesh of fewer triangles that stands for a large one while it moves
+    this.pieces = null;  // parts of torn triangles
+    this.coarse = null;  // coarse mesh that is drawn while the camera moves
     this.ink = new THREE.MeshBasicMaterial({ color: 0x19191e });
     this.ribbons = Ahm.ribbon_material(this.viewport);
     this.marks = new THREE.Group();
@@ -73,7 +73,7 @@ Ahm.Stage = class {
     this.controls.addEventListener("change", () => this.moved());
   }
 
-  // Coarser while it moves where the machine is slow, whole again soon after.
+  // Called when the camera moves. Slow machines draw a coarser picture during the movement, and the full picture afterwards.
   moved() {
     this.is_moving = true;
     clearTimeout(this.rest);
@@ -84,7 +84,7 @@ Ahm.Stage = class {
     this.redraw();
   }
 
-  // A map by row. It stays as it is until the next one.
+  // Sets the map. `map` has values by row, and must not change afterwards.
   set_map(map) {
     this.map = map;
     this.uniforms.sectors.value = map.sectors;
@@ -130,7 +130,7 @@ Ahm.Stage = class {
     this.redraw();
   }
 
-  // Draws torn triangles in pieces.
+  // Replaces torn triangles by their parts.
   cut() {
     if (!this.surface.is_mesh || !this.map) return;
     const geometry = this.object.geometry, a = geometry.attributes;
@@ -178,7 +178,7 @@ Ahm.Stage = class {
     this.redraw();
   }
 
-  // An image on the map: `width` in units of the surface, `turn` in radians; null: none.
+  // Draws an image on the map. `width` in units of the surface, `turn` in radians. No image if `texture` is null.
   set_decal(texture, width, turn) {
     const frame = this.uniforms.decal_frame.value;
     if (!texture) {
@@ -225,7 +225,7 @@ Ahm.Stage = class {
     else if (milliseconds < 24) this.quality = Math.min(1, this.quality * 1.5);
   }
 
-  // It shares all but the triangles.
+  // The coarse mesh shares everything except the triangles.
   make_coarse() {
     if (this.coarse) return;
     const geometry = new THREE.BufferGeometry(), whole = this.object.geometry;
@@ -236,7 +236,7 @@ Ahm.Stage = class {
     this.scene.add(this.coarse);
   }
 
-  // For what is coarser while it moves: fewer pixels, and of clouds fewer and larger discs.
+  // Reduces the quality while the camera moves: fewer pixels; for clouds, fewer and larger discs.
   apply_quality() {
     const share = this.is_moving ? this.quality : 1;
     const ratio = window.devicePixelRatio * Math.max(0.25, Math.sqrt(share));
@@ -268,7 +268,7 @@ Ahm.Stage = class {
     this.draw_legend();
   }
 
-  // Of constant size on the screen, a little nearer than it is, or a bulging surface would swallow the arrows.
+  // Constant size on the screen. Slightly nearer to the camera, so that a convex surface does not hide the arrows.
   place(object, position, size, half) {
     const to_eye = this.camera.position.clone().sub(position), scale = size * to_eye.length() * 2 * half;
     object.scale.setScalar(scale);
@@ -300,14 +300,14 @@ Ahm.Stage = class {
     const s = this.surface;
     this.controls.target.fromArray(s.target);
     const away = new THREE.Vector3().fromArray(s.eye).sub(this.controls.target);
-    // The stored distance fits the stored shape of picture; a narrower window must step back.
+    // The stored distance fits the stored aspect ratio. In a narrower window, the camera must be farther away.
     away.multiplyScalar(Math.max(1, s.aspect * this.height / this.width));
     this.camera.position.copy(this.controls.target).add(away);
     this.controls.update();
     this.redraw();
   }
 
-  // Turns about the target, in radians to the left and up.
+  // Rotates the camera around the target. Angles in radians, to the left and up.
   turn(left, up) {
     const offset = this.camera.position.clone().sub(this.controls.target);
     const to_y = new THREE.Quaternion().setFromUnitVectors(this.camera.up, new THREE.Vector3(0, 1, 0));
@@ -327,14 +327,14 @@ Ahm.Stage = class {
     this.moved();
   }
 
-  // The ray through a pixel, from the corner of the canvas: [origin, direction].
+  // The ray through a pixel: [origin, direction]. Pixels are relative to the corner of the canvas.
   ray(x, y) {
     this.camera.updateMatrixWorld();
     const end = new THREE.Vector3(2 * x / this.width - 1, 1 - 2 * y / this.height, 0.5).unproject(this.camera);
     return [this.camera.position.toArray(), end.sub(this.camera.position).toArray()];
   }
 
-  // The pixel of a position, from the corner of the canvas.
+  // The pixel of a position, relative to the corner of the canvas.
   pixel(position) {
     this.camera.updateMatrixWorld();
     const p = new THREE.Vector3().fromArray(position).project(this.camera);

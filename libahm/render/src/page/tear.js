@@ -1,8 +1,9 @@
 "use strict";
-// A map jumps where shortest paths arrive from two sides: at its cut locus, and between cells. Interpolated over a triangle
-// that would be a sheaf of stripes, so triangles are cut there: each corner keeps its side up to the middle.
+// Maps jump where shortest paths arrive from two sides: at the cut locus, and between cells. Interpolation over a triangle would draw a
+// bundle of stripes. Such triangles are split: each corner keeps its direction up to the middle of the triangle.
 (function () {
-  // Two corners whose coordinates lie much farther apart than the corners, and around a source in different directions.
+  // Whether the map jumps between two corners: their coordinates are much farther apart than the corners and, around a source, in
+  // different directions.
   function is_torn(map, p, a, b, pattern) {
     const au = map[2 * a], av = map[2 * a + 1], bu = map[2 * b], bv = map[2 * b + 1];
     if (pattern === "cells") return au !== bu;
@@ -14,7 +15,7 @@
     return du * du + dv * dv > 9 * (x * x + y * y + z * z);
   }
 
-  // Numbers of the torn triangles. `map` by vertex, 1e30 where there is none.
+  // Indices of the torn triangles. `map`: coordinates by vertex, 1e30 for vertices without coordinates.
   Ahm.torn = function (surface, map, pattern) {
     const t = surface.triangles, p = surface.positions, out = [];
     for (let k = 0; k < t.length; k += 3) {
@@ -26,7 +27,7 @@
     return out;
   };
 
-  // What does not jump where the map does.
+  // The distance, which is continuous where the map jumps.
   const distance = (uv, pattern) => pattern === "polar" ? Math.hypot(uv[0], uv[1]) : pattern === "grid" ? Math.abs(uv[1]) : uv[1];
   function with_distance(uv, d, pattern) {
     if (pattern !== "polar") return [uv[0], pattern === "grid" ? (uv[1] < 0 ? -d : d) : d];
@@ -34,7 +35,7 @@
     return [uv[0] / length * d, uv[1] / length * d];
   }
 
-  // Six small triangles for each torn one, as arrays of attributes by vertex. `attributes`: name -> {array, size}.
+  // Splits each torn triangle into six. Returns arrays of attributes by vertex. `attributes`: name -> {array, size}.
   Ahm.torn_pieces = function (surface, torn, attributes, pattern) {
     const t = surface.triangles, out = {}, count = 18 * torn.length;
     for (const name in attributes) out[name] = new attributes[name].array.constructor(count * attributes[name].size);

@@ -93,7 +93,7 @@ Vec3 ExactGeodesics::position(const exact::MeshPoint& point) const {
 }
 
 /// The angle of a source's u axis in the frame of side 0 of its face.
-double ExactGeodesics::u_in_face(const SurfacePoint& at, const SurfaceSource& placed, Index face) const {
+double ExactGeodesics::u_angle_in_face(const SurfacePoint& at, const SurfaceSource& placed, Index face) const {
   Vec2 u{};
   if (placed.frame && !flat_.positions.empty()) {
     const auto corner = [&](int s) { return flat_.positions[flat_.surface.record(3 * face + s).tail]; };
@@ -149,7 +149,7 @@ exact::TracedPath ExactGeodesics::trace_to(const SurfaceSource& placed) const tr
 }
 
 /// The angle of the u axis of a source in a tangent plane, in the frame of side 0 of the face that contains the source.
-double ExactGeodesics::u_beyond_row(const SurfaceSource& placed) const {
+double ExactGeodesics::u_angle_beyond_row(const SurfaceSource& placed) const {
   const std::span<const double> back = placed.source.offsets();
   const Axes a = vertex_axes(placed);
   const double side = a[0] * a[3] - a[1] * a[2] < 0 ? -1 : 1;
@@ -161,14 +161,15 @@ Axes ExactGeodesics::axes(const SurfacePoint& at, const SurfaceSource& placed, c
     return vertex_axes(placed);
   }
   const exact::MeshPoint inside = exact::checked(flat_.surface, point, "source");
-  const double u = std::holds_alternative<TangentPoint>(at) ? u_beyond_row(placed) : u_in_face(at, placed, inside.face);
+  const double u =
+      std::holds_alternative<TangentPoint>(at) ? u_angle_beyond_row(placed) : u_angle_in_face(at, placed, inside.face);
   if (exact::vertex_of(flat_.surface, inside) < 0) return axes_at(u);
   const auto corner = std::max_element(inside.barycentric.begin(), inside.barycentric.end());
   return at_corner(static_cast<exact::Half>(3 * inside.face + (corner - inside.barycentric.begin())), u);
 }
 
-ExactGeodesics::Placed ExactGeodesics::placed(std::span<const ExactSource> sources) const {
-  Placed result;
+ExactGeodesics::PlacedSources ExactGeodesics::placed(std::span<const ExactSource> sources) const {
+  PlacedSources result;
   for (const ExactSource& s : sources) {
     SurfaceSource placed = surface_->source(s.point, s.u_axis);
     result.points.push_back(point(s.point));
@@ -184,7 +185,7 @@ ExactGeodesics::Placed ExactGeodesics::placed(std::span<const ExactSource> sourc
 }
 
 /// Joins several sources into one.
-Source ExactGeodesics::joined(std::span<const ExactSource> given, const Placed& placed) {
+Source ExactGeodesics::joined(std::span<const ExactSource> given, const PlacedSources& placed) {
   if (given.size() == 1 && given[0].position == Vec2{} && given[0].angle == 0 && !given[0].mirrored)
     return placed.sources[0];
   const bool plain = std::all_of(given.begin(), given.end(), [](const ExactSource& s) {
@@ -248,7 +249,7 @@ LogMap ExactGeodesics::log_map(Vertex source, const ExactMapOptions& options) co
   return log_map(at_vertex(flat_, source), Source::at_vertex(source), options).map;
 }
 
-ExactGeodesics::Placed ExactGeodesics::at_vertex(const FlatTriangles& flat, Vertex source) {
+ExactGeodesics::PlacedSources ExactGeodesics::at_vertex(const FlatTriangles& flat, Vertex source) {
   return {{flat.surface.vertex_point(source)}, {from_frame(flat, source.index, {1, 0, 0, 1})}, {}, {Vec2{}}};
 }
 
@@ -262,7 +263,7 @@ std::vector<Wavefront::Seed> ExactGeodesics::seeds(Vertex source, const ExactMap
   return seeds(at_vertex(flat_, source), options);
 }
 
-std::vector<Wavefront::Seed> ExactGeodesics::seeds(const Placed& from, const ExactMapOptions& options) const {
+std::vector<Wavefront::Seed> ExactGeodesics::seeds(const PlacedSources& from, const ExactMapOptions& options) const {
   const exact::ExactMap exact = exact_map(from, options);
   std::vector<Wavefront::Seed> seeds;
   for (Index i = 0; i < exact.size(); ++i) {
@@ -280,7 +281,7 @@ std::vector<Wavefront::Seed> ExactGeodesics::seeds(const Placed& from, const Exa
   return seeds;
 }
 
-exact::ExactMap ExactGeodesics::exact_map(const Placed& from, const ExactMapOptions& options) const {
+exact::ExactMap ExactGeodesics::exact_map(const PlacedSources& from, const ExactMapOptions& options) const {
   exact::ExactOptions exact_options;
   exact_options.radius = options.radius / flat_.length_unit;
   exact_options.tolerance = options.tolerance;
@@ -290,11 +291,11 @@ exact::ExactMap ExactGeodesics::exact_map(const Placed& from, const ExactMapOpti
 }
 
 LabelledLogMap ExactGeodesics::log_map(std::span<const ExactSource> sources, const ExactMapOptions& options) const {
-  const Placed from = placed(sources);
+  const PlacedSources from = placed(sources);
   return log_map(from, joined(sources, from), options);
 }
 
-LabelledLogMap ExactGeodesics::log_map(const Placed& from, Source source, const ExactMapOptions& options) const {
+LabelledLogMap ExactGeodesics::log_map(const PlacedSources& from, Source source, const ExactMapOptions& options) const {
   const exact::ExactMap exact = exact_map(from, options);
   std::vector<double> coordinates;
   std::vector<Index> labels;

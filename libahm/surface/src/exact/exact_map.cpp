@@ -31,8 +31,8 @@ void check(const PolyhedralSurface& surface, std::span<const MeshPoint> sources,
 }
 
 /// Propagates windows from all sources. The memory of the windows is freed on return.
-Found propagate(const PolyhedralSurface& surface, std::span<const MeshPoint> sources,
-                std::span<const MeshPoint> targets, const ExactOptions& options) {
+PropagationResult propagate(const PolyhedralSurface& surface, std::span<const MeshPoint> sources,
+                            std::span<const MeshPoint> targets, const ExactOptions& options) {
   std::unique_ptr<Propagation> windows;
   if (options.tolerance > 0)
     windows = std::make_unique<MergedPropagation>(surface, options, targets);
@@ -45,7 +45,7 @@ Found propagate(const PolyhedralSurface& surface, std::span<const MeshPoint> sou
 
 /// Checks that no vertex is farther than a neighbor plus the side between them. Otherwise windows were lost, which happens in
 /// needles with angles near the rounding error.
-void check_reached(const PolyhedralSurface& surface, const Found& found, double tolerance) {
+void check_reached(const PolyhedralSurface& surface, const PropagationResult& found, double tolerance) {
   const std::span<const double> distance = found.distance;
   const auto check = [&](Index from, Index to, double length) {
     const double way = (distance[from] + length) * (1 + 1e-9 + 3 * tolerance);
@@ -83,11 +83,11 @@ class MapBuilder {
     map_.sources_ = std::move(sources);
     map_.targets_ = std::move(targets);
     map_.vertices_ = static_cast<std::size_t>(surface.vertex_count());
-    lit_.assign(map_.vertices_, 0);
-    for (const MeshPoint& p : map_.sources_) lit_[component_of(surface, p)] = 1;
+    has_source_.assign(map_.vertices_, 0);
+    for (const MeshPoint& p : map_.sources_) has_source_[component_of(surface, p)] = 1;
   }
 
-  ExactMap build(Found found, double tolerance) {
+  ExactMap build(PropagationResult found, double tolerance) {
     map_.tolerance_ = tolerance;
     map_.origins_ = std::move(found.origins);
     map_.statistics_ = found.statistics;
@@ -106,9 +106,9 @@ class MapBuilder {
   }
 
  private:
-  void add(double distance, Index component, double horizon, const Reached& reached) {
+  void add(double distance, Index component, double horizon, const ArrivalRecord& reached) {
     const bool ok = distance <= horizon && distance < infinity;
-    map_.status_.push_back(ok ? Status::ok : lit_[component] ? Status::beyond_radius : Status::disconnected);
+    map_.status_.push_back(ok ? Status::ok : has_source_[component] ? Status::beyond_radius : Status::disconnected);
     map_.distance_.push_back(ok ? distance : nan);
     const Index source = ok ? map_.origins_[reached.origin].source : -1;
     map_.direction_.push_back(ok ? scaled(reached.direction, source) : nan);
@@ -122,7 +122,7 @@ class MapBuilder {
   }
 
   const PolyhedralSurface& surface_;
-  std::vector<std::uint8_t> lit_;  ///< per component: whether it contains a source
+  std::vector<std::uint8_t> has_source_;  ///< per component: whether it contains a source
   ExactMap map_;
 };
 
@@ -141,7 +141,7 @@ ExactMap exact_map(const PolyhedralSurface& surface, std::span<const MeshPoint> 
     std::vector<MeshPoint> from, to;
     for (const MeshPoint& p : sources) from.push_back(checked(surface, p, "source"));
     for (const MeshPoint& p : options.targets) to.push_back(checked(surface, p, "target"));
-    Found found = propagate(surface, from, to, options);
+    PropagationResult found = propagate(surface, from, to, options);
     check_reached(surface, found, options.tolerance);
     return MapBuilder(surface, std::move(from), std::move(to)).build(std::move(found), options.tolerance);
   });

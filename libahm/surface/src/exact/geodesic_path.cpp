@@ -27,7 +27,7 @@ template <class Map>
 Line mapped(const Line& line, Half half, const Map& place) {
   const Place start = place(line.start), ahead = place({0, 0});
   const Place tip = place(line.direction) - ahead;
-  return {half, start, tip, line.walked};
+  return {half, start, tip, line.walked_length};
 }
 
 /// Where the line crosses the side from a to b of the given length; its ends belong to the side.
@@ -71,9 +71,9 @@ Exit leave(const PolyhedralSurface& surface, const Line& line) {
     const Place a = corner[s], run = corner[(s + 1) % 3] - a;
     const double outwards = cross(line.direction, run);
     if (outwards <= 1e-14 * norm(run)) continue;
-    const double walked = cross(a - line.start, run) / outwards;
-    if (walked >= soonest) continue;
-    soonest = walked;
+    const double walked_length = cross(a - line.start, run) / outwards;
+    if (walked_length >= soonest) continue;
+    soonest = walked_length;
     through = s;
   }
   return leave_through(surface, line, side[through]);
@@ -87,7 +87,7 @@ Line cross_side(const PolyhedralSurface& surface, const Line& line, const Exit& 
     const Place q = beyond_left(r, p);
     return r.mirrored & 1 ? Place{r.left - q[0], q[1]} : q;
   });
-  beyond.walked = exit.walked;
+  beyond.walked_length = exit.walked_length;
   return beyond;
 }
 
@@ -170,9 +170,9 @@ constexpr double vertex_margin = 1e-12, graze_margin = 1e-10;
 double positive_angle(double angle) { return angle < 0 ? angle + 2 * pi : angle; }
 
 /// Collects a path from its end back to its source.
-class Backwards {
+class PathCollector {
  public:
-  Backwards(const PolyhedralSurface& surface, const ExactMap& map) : surface_(surface), map_(map) {}
+  PathCollector(const PolyhedralSurface& surface, const ExactMap& map) : surface_(surface), map_(map) {}
 
   GeodesicPath to_vertex(Index vertex) {
     const Arrival& in = map_.arrival(Vertex{vertex});
@@ -217,20 +217,20 @@ class Backwards {
     if (!(length > 0)) return origin.vertex;
     Line line{in.half, end, {back[0] / length, back[1] / length}};
     Exit exit = target ? leave(surface_, line) : leave_through(surface_, line, in.half);
-    const auto at_end = [&] { return exit.walked >= (1 - end_margin) * length; };
+    const auto at_end = [&] { return exit.walked_length >= (1 - end_margin) * length; };
     const auto with_source = [&] { return lies_in(map_.sources()[origin.source], line.half / 3); };
     const auto arrived = [&] {
-      return at_end() && (origin.vertex >= 0 || with_source() || exit.walked > (1 + end_margin) * length);
+      return at_end() && (origin.vertex >= 0 || with_source() || exit.walked_length > (1 + end_margin) * length);
     };
     while (!arrived()) {
-      const Index through = grazed(exit, end_distance);
+      const Index through = grazed_vertex(exit, end_distance);
       if (through >= 0) return through;
-      if (!(target && exit.walked <= end_margin * length && lies_on(*target, exit.side)))
+      if (!(target && exit.walked_length <= end_margin * length && lies_on(*target, exit.side)))
         path_.points.push_back(point_on(surface_, exit.side, exit.along));
       const Line across = cross_side(surface_, line, exit);
       if (across.half < 0 && origin.vertex < 0 && (at_end() || with_source())) return -1;
       if (across.half < 0) return end_of_side(line, exit, end_distance);
-      if (path_.points.size() > most_points()) lost(exit, end_distance);
+      if (path_.points.size() > max_points()) lost(exit, end_distance);
       line = across;
       exit = leave_upwards(surface_, line);
     }
@@ -248,12 +248,12 @@ class Backwards {
   }
 
   /// The vertex at an exit if the shortest path to it is part of this path; otherwise -1.
-  Index grazed(const Exit& exit, double end_distance) const {
+  Index grazed_vertex(const Exit& exit, double end_distance) const {
     const HalfRecord& r = surface_.record(exit.side);
     const bool at_tail = exit.along < graze_margin * r.length;
     if (!at_tail && exit.along < (1 - graze_margin) * r.length) return -1;
     const Index vertex = at_tail ? r.tail : r.head;
-    return passes(vertex, exit.walked, end_distance) ? vertex : -1;
+    return passes(vertex, exit.walked_length, end_distance) ? vertex : -1;
   }
 
   /// The vertex ahead, where a path along the boundary leaves it by rounding.
@@ -261,15 +261,15 @@ class Backwards {
     const HalfRecord& r = surface_.record(exit.side);
     const bool to_head = in_frame_of(surface_, line, exit.side).direction[0] > 0;
     const Index vertex = to_head ? r.head : r.tail;
-    const double walked = exit.walked + (to_head ? r.length - exit.along : exit.along);
-    if (!passes(vertex, walked, end_distance)) lost(exit, end_distance);
+    const double walked_length = exit.walked_length + (to_head ? r.length - exit.along : exit.along);
+    if (!passes(vertex, walked_length, end_distance)) lost(exit, end_distance);
     return vertex;
   }
 
   /// Whether the shortest path to a vertex, which the path has reached backward, is part of this path.
-  bool passes(Index vertex, double walked, double end_distance) const {
+  bool passes(Index vertex, double walked_length, double end_distance) const {
     const double left = map_.distance(Vertex{vertex});
-    return left < end_distance && std::abs(left + walked - end_distance) <= 1e-9 * end_distance;
+    return left < end_distance && std::abs(left + walked_length - end_distance) <= 1e-9 * end_distance;
   }
 
   [[noreturn]] static void lost(const Exit& exit, double end_distance) {
@@ -277,7 +277,7 @@ class Backwards {
                 std::to_string(exit.side / 3));
   }
 
-  std::size_t most_points() const { return 3 * static_cast<std::size_t>(surface_.face_count()) + 3; }
+  std::size_t max_points() const { return 3 * static_cast<std::size_t>(surface_.face_count()) + 3; }
 
   GeodesicPath finish(Index origin, double distance, double direction) {
     path_.length = distance;
@@ -302,7 +302,7 @@ void check_exact(const ExactMap& map) {
 /// Directions beyond the boundary by less than this run along it.
 constexpr double boundary_margin = 1e-9;
 /// Maximum number of sides that a line may cross.
-constexpr std::size_t most_crossings = 1000000;
+constexpr std::size_t max_crossings = 1000000;
 
 GeodesicPath without_points(Status status) {
   GeodesicPath path;
@@ -319,17 +319,17 @@ class Tracer {
     path_.points.push_back(start);
     const bool at_vertex = vertex_of(surface_, start) >= 0;
     for (Exit exit = at_vertex ? leave_corner(line) : leave(surface_, line);;) {
-      if (left_ <= exit.walked)
+      if (left_ <= exit.walked_length)
         return end(TraceEnd::complete, line, left_, point_of(surface_, line.half, line.at(left_)));
       const double side = surface_.record(exit.side).length;
       const bool at_tail = exit.along<vertex_margin * side, at_head = exit.along>(1 - vertex_margin) * side;
       if (at_tail || at_head) {
         const Half corner = at_tail ? exit.side : next(exit.side);
         const Index vertex = surface_.record(corner).tail;
-        const std::optional<double> out = straight_on(line, corner);
-        if (!out) return end(TraceEnd::boundary, line, exit.walked, surface_.vertex_point(Vertex{vertex}));
-        done_ += exit.walked;
-        left_ -= exit.walked;
+        const std::optional<double> out = outgoing_angle(line, corner);
+        if (!out) return end(TraceEnd::boundary, line, exit.walked_length, surface_.vertex_point(Vertex{vertex}));
+        done_ += exit.walked_length;
+        left_ -= exit.walked_length;
         path_.points.push_back(surface_.vertex_point(Vertex{vertex}));
         line = line_from_vertex(surface_, vertex, *out);
         check_count(done_);
@@ -338,29 +338,29 @@ class Tracer {
       }
       const Line beyond = cross_side(surface_, line, exit);
       const MeshPoint crossed = point_on(surface_, exit.side, exit.along);
-      if (beyond.half < 0) return end(TraceEnd::boundary, line, exit.walked, crossed);
+      if (beyond.half < 0) return end(TraceEnd::boundary, line, exit.walked_length, crossed);
       path_.points.push_back(crossed);
-      check_count(done_ + exit.walked);
+      check_count(done_ + exit.walked_length);
       line = beyond;
       exit = leave_upwards(surface_, line);
     }
   }
 
  private:
-  TracedPath end(TraceEnd how, const Line& line, double walked, const MeshPoint& point) {
+  TracedPath end(TraceEnd how, const Line& line, double walked_length, const MeshPoint& point) {
     path_.end = how;
-    path_.length = done_ + walked;
+    path_.length = done_ + walked_length;
     path_.direction = positive_angle(angle_in_face(surface_, line));
     path_.points.push_back(point);
     return std::move(path_);
   }
 
-  void check_count(double walked) const {
-    if (path_.points.size() < most_crossings) return;
+  void check_count(double walked_length) const {
+    if (path_.points.size() < max_crossings) return;
     throw InvalidArgument("line_too_long",
-                          "the line crosses more than " + std::to_string(most_crossings) + " sides within " +
-                              detail::number(walked) + " of its length " + detail::number(length_) + ", near face " +
-                              std::to_string(path_.points.back().face),
+                          "the line crosses more than " + std::to_string(max_crossings) + " sides within " +
+                              detail::number(walked_length) + " of its length " + detail::number(length_) +
+                              ", near face " + std::to_string(path_.points.back().face),
                           "choose a smaller length, or repair the needle triangles there");
   }
 
@@ -369,7 +369,7 @@ class Tracer {
 
   /// The angle at which a line continues at the vertex of a corner. At interior vertices half of the angle lies on either side.
   /// On the boundary pi lies on one side, or the line ends.
-  std::optional<double> straight_on(const Line& line, Half corner) const {
+  std::optional<double> outgoing_angle(const Line& line, Half corner) const {
     const Index vertex = surface_.record(corner).tail;
     const Line seen = in_frame_of(surface_, line, corner);
     const double sum = surface_.angle_sum(vertex);
@@ -395,7 +395,7 @@ GeodesicPath path_to_vertex(const PolyhedralSurface& surface, const ExactMap& ma
                           "), or the map belongs to another surface");
   check_exact(map);
   if (map.status(vertex) != Status::ok) return without_points(map.status(vertex));
-  return Backwards(surface, map).to_vertex(vertex.index);
+  return PathCollector(surface, map).to_vertex(vertex.index);
 }
 
 GeodesicPath path_to_target(const PolyhedralSurface& surface, const ExactMap& map, std::size_t target) {
@@ -405,8 +405,8 @@ GeodesicPath path_to_target(const PolyhedralSurface& surface, const ExactMap& ma
   check_exact(map);
   if (map.target_status(target) != Status::ok) return without_points(map.target_status(target));
   if (const Index vertex = vertex_of(surface, map.target(target)); vertex >= 0)
-    return Backwards(surface, map).to_vertex(vertex);
-  return Backwards(surface, map).to_target(target);
+    return PathCollector(surface, map).to_vertex(vertex);
+  return PathCollector(surface, map).to_target(target);
 }
 
 GeodesicPath geodesic_path(const PolyhedralSurface& surface, const MeshPoint& from, const MeshPoint& to) {
@@ -459,7 +459,7 @@ namespace {
 auto key(const MeshPoint& point) { return std::tie(point.face, point.barycentric); }
 
 /// Groups the numbers of pairs that have the same start.
-std::vector<std::vector<std::size_t>> by_start(std::span<const PointPair> pairs) {
+std::vector<std::vector<std::size_t>> group_by_start(std::span<const PointPair> pairs) {
   std::vector<std::size_t> order(pairs.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(),
@@ -476,7 +476,7 @@ std::vector<std::vector<std::size_t>> by_start(std::span<const PointPair> pairs)
 
 std::vector<GeodesicPath> geodesic_paths(const PolyhedralSurface& surface, std::span<const PointPair> pairs,
                                          const Progress& progress, unsigned threads) {
-  const std::vector<std::vector<std::size_t>> groups = by_start(pairs);
+  const std::vector<std::vector<std::size_t>> groups = group_by_start(pairs);
   std::vector<GeodesicPath> paths(pairs.size());
   std::mutex reporting;
   std::size_t done = 0;
@@ -546,7 +546,7 @@ class EdgeSearch {
           best = entry.distance + after[s];
           last = entry.vertex;
         }
-      go_on(entry);
+      expand(entry);
     }
     std::vector<MeshPoint> way;
     for (Index v = last; v >= 0; v = step_[v].from) {
@@ -572,7 +572,7 @@ class EdgeSearch {
     return distance(surface_.place(point), surface_.place(corner));
   }
 
-  void go_on(const Entry& entry) {
+  void expand(const Entry& entry) {
     const Corner first = surface_.first_corner(entry.vertex);
     Corner c = first;
     do {

@@ -10,19 +10,19 @@ namespace ahm::exact {
 
 /// A straight line that is traced from face to face.
 struct Line {
-  Half half = -1;     ///< half-edge in whose frame the line is
-  Place start{};      ///< start of the line, unfolded into this frame
-  Place direction{};  ///< unit vector
-  double walked = 0;  ///< length traced so far
+  Half half = -1;            ///< half-edge in whose frame the line is
+  Place start{};             ///< start of the line, unfolded into this frame
+  Place direction{};         ///< unit vector
+  double walked_length = 0;  ///< length traced so far
 
   Place at(double s) const { return start + s * direction; }
 };
 
 /// The point where a line leaves a face.
 struct Exit {
-  double walked;  ///< length along the line
-  Half side;      ///< half-edge of the same face, through which the line leaves
-  double along;   ///< distance from the tail of that half-edge
+  double walked_length;  ///< length along the line
+  Half side;             ///< half-edge of the same face, through which the line leaves
+  double along;          ///< distance from the tail of that half-edge
 };
 
 /// The line in the frame of another half-edge of the same face.

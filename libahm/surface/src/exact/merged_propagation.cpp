@@ -11,7 +11,7 @@ namespace {
 
 /// Relative to the side: minimum width of a piece, below which its neighbor replaces it, and accuracy of the position where two
 /// pieces are equal.
-constexpr double least_piece = 1e-11, crossing_width = 1e-10;
+constexpr double min_piece_width = 1e-11, crossing_width = 1e-10;
 /// Relative rounding error of distances.
 constexpr double rounding = 1e-14;
 /// Maximum number of steps. Every third one bisects the interval, so that it also ends where distances bend sharply.
@@ -39,7 +39,7 @@ void FrontProfile::emit(const Entry& entry, double begin, double end) {
     FrontPiece& last = out_.back().piece;
     const bool same = out_.back().fresh == entry.fresh && last.from == entry.piece.from &&
                       last.sigma == entry.piece.sigma && last.turn == entry.piece.turn;
-    if (same || end - begin < least_piece * length_) {
+    if (same || end - begin < min_piece_width * length_) {
       last.end = end;
       return;
     }
@@ -119,11 +119,11 @@ void FrontProfile::insert(const FrontPiece& piece) {
 namespace {
 
 /// Maximum number of pieces that are merged at once.
-constexpr std::size_t most_at_once = 12;
+constexpr std::size_t max_run = 12;
 /// Pieces whose directions at the source differ by more than this, in radians, are not merged.
-constexpr double most_turn = 0.05;
+constexpr double max_direction_jump = 0.05;
 /// Maximum distance of a merged piece's origin, relative to the distances and the width of the piece.
-constexpr double farthest_origin = 1e4;
+constexpr double max_origin_ratio = 1e4;
 /// Gaps between pieces that are only rounding, relative to the side.
 constexpr double closed_gap = 1e-9;
 
@@ -156,7 +156,7 @@ std::optional<FrontPiece> below(Run run) {
   const double at_begin = first.at(first.begin), at_end = last.at(last.end);
   const Ends ends{first.begin, last.end - first.begin, at_begin, at_end - at_begin};
   if (!(std::abs(ends.rise) < ends.width)) return {};
-  double near = farthest_origin * (at_begin + at_end + ends.width);
+  double near = max_origin_ratio * (at_begin + at_end + ends.width);
   near = std::min(
       {near, ends.with_slope_at_begin(first.slope(first.begin)), ends.with_slope_at_end(last.slope(last.end))});
   for (std::size_t k = 0; k + 1 < run.size(); ++k) {
@@ -180,13 +180,13 @@ std::optional<FrontPiece> below(Run run) {
 
 /// Sets directions that agree with a run at both ends and follow the angle of the ray in between. Returns false where the
 /// directions of the run jump.
-bool turn_as(Run run, double full_angle, FrontPiece& piece) {
+bool set_directions(Run run, double full_angle, FrontPiece& piece) {
   const double start = run.front().piece.direction(run.front().piece.begin);
   double end = start;
   for (const auto& [old, fresh] : run) {
     double jump = old.direction(old.begin) - end;
     if (std::isfinite(full_angle)) jump -= full_angle * std::round(jump / full_angle);
-    if (std::abs(jump) > most_turn) return false;
+    if (std::abs(jump) > max_direction_jump) return false;
     end += jump + old.direction(old.end) - old.direction(old.begin);
   }
   const double low = std::atan2(-piece.from[1], piece.begin - piece.from[0]);
@@ -212,7 +212,7 @@ std::optional<FrontPiece> merged(Run run, const MergeRules& rules) {
   for (const auto& [old, fresh] : run)
     piece->error = std::max(piece->error, old.error + highest_difference(old, *piece, old.begin, old.end));
   if (!(piece->error <= rules.tolerance * piece->lowest())) return {};
-  if (!turn_as(run, rules.full_angle[source], *piece)) return {};
+  if (!set_directions(run, rules.full_angle[source], *piece)) return {};
   piece->origin = widest.origin;
   return piece;
 }
@@ -230,7 +230,7 @@ void FrontProfile::merge(const MergeRules& rules) {
   for (std::size_t k = 0; k < entries_.size();) {
     Entry best = entries_[k];
     std::size_t end = k + 1;
-    while (best.fresh && end < entries_.size() && entries_[end].fresh && end - k < most_at_once &&
+    while (best.fresh && end < entries_.size() && entries_[end].fresh && end - k < max_run &&
            entries_[end].piece.begin == entries_[end - 1].piece.end) {
       const std::optional<FrontPiece> one = merged(std::span(entries_).subspan(k, end + 1 - k), rules);
       if (!one) break;
@@ -252,20 +252,20 @@ constexpr std::uint32_t none = ~0u;
 constexpr double same_ray = 1e-15;
 
 /// Whether the ray from an origin through t on the half-edge continues to the left of the ray from another origin.
-bool opens_left(const Place& from, const Place& other, double t) {
+bool is_left_of(const Place& from, const Place& other, double t) {
   const Vec2 ray{t - from[0], -from[1]}, beside{t - other[0], -other[1]};
   return cross(beside, ray) > same_ray * norm(ray) * norm(beside);
 }
 
 /// How much the distance of p by a piece is too short, where p lies outside the rays of the piece.
-double lacking(const FrontPiece& piece, const Place& p) {
+double missing_length(const FrontPiece& piece, const Place& p) {
   const double crossing = crossing_to(piece.from, p);
   const double t = std::clamp(crossing, piece.begin, piece.end);
   return t == crossing ? 0.0 : detour(piece.from, t, p);
 }
 
 /// Converts a piece to the frame of the reversed half-edge, mirrored.
-void turn_over(FrontPiece& piece, double length) {
+void mirror_piece(FrontPiece& piece, double length) {
   const double begin = piece.begin;
   piece.begin = length - piece.end;
   piece.end = length - begin;
@@ -285,7 +285,7 @@ MergedPropagation::MergedPropagation(const PolyhedralSurface& surface, const Exa
       free_(none),
       waiting_(bucket_width * surface.mean_length()),
       turns_(bucket_width * surface.mean_length()),
-      leaving_(bucket_width * surface.mean_length()) {}
+      half_edges_to_clear_(bucket_width * surface.mean_length()) {}
 
 // ---------------------------------------------------------------------------------------------- origins
 
@@ -316,7 +316,7 @@ void MergedPropagation::nearer(std::size_t row, double distance, double error) {
 void MergedPropagation::turn(const Turn& event) {
   const Index v = event.vertex;
   if (event.distance > distance_[v]) return;
-  const Reached& in = reached_[v];
+  const ArrivalRecord& in = reached_[v];
   const auto origin2 = static_cast<std::uint32_t>(2 * origins_.size());
   origins_.push_back({v, origins_[in.origin].source, event.distance, in.direction});
   origin_error_.push_back(upper_[v] - event.distance);
@@ -354,7 +354,7 @@ bool MergedPropagation::loses(const HalfRecord& r, const FrontPiece& piece) cons
 
 void MergedPropagation::wait(Half half, const FrontPiece& piece) {
   const HalfRecord& r = surface_.record(half);
-  if (!(piece.end - piece.begin > least_width * r.length) || on_line(piece.from, r.length) || loses(r, piece)) return;
+  if (!(piece.end - piece.begin > min_width * r.length) || on_line(piece.from, r.length) || loses(r, piece)) return;
   const double key = piece.lowest();
   if (key > horizon_) return;
   Lists& lists = lists_[half];
@@ -369,8 +369,8 @@ void MergedPropagation::wait(Half half, const FrontPiece& piece) {
 
 void MergedPropagation::cross_side(const Side& event) {
   if (event.key != lists_[event.half].key) return;
-  forget_passed();
-  if (lists_[event.half].passed == none) leaving_.push(event.key, event.half);
+  discard_passed();
+  if (lists_[event.half].passed == none) half_edges_to_clear_.push(event.key, event.half);
   gather(event);
   profile_.merge({tolerance_, origins_, full_angle_});
   keep(event.half);
@@ -401,16 +401,16 @@ void MergedPropagation::gather(const Side& event) {
 }
 
 /// Discards passed pieces of half-edges where every later piece loses to one of the ends.
-void MergedPropagation::forget_passed() {
-  for (; leaving_.key() < waiting_.key(); leaving_.advance())
-    while (!leaving_.bucket_empty()) leaving_.drain_chunk([this](Half half) { leave(half); });
+void MergedPropagation::discard_passed() {
+  for (; half_edges_to_clear_.key() < waiting_.key(); half_edges_to_clear_.advance())
+    while (!half_edges_to_clear_.bucket_empty()) half_edges_to_clear_.drain_chunk([this](Half half) { leave(half); });
 }
 
 void MergedPropagation::leave(Half half) {
   const HalfRecord& r = surface_.record(half);
-  const double now = leaving_.key(), near = std::min(upper_[r.tail], upper_[r.head]);
+  const double now = half_edges_to_clear_.key(), near = std::min(upper_[r.tail], upper_[r.head]);
   const double last = (near < infinity ? near + r.length : now + r.length) * slack;
-  if (now < last) return leaving_.push(last + 2 * bucket_width * surface_.mean_length(), half);
+  if (now < last) return half_edges_to_clear_.push(last + 2 * bucket_width * surface_.mean_length(), half);
   for (std::uint32_t k = std::exchange(lists_[half].passed, none); k != none;) {
     const std::uint32_t next = pool_[k].next;
     give_back(k);
@@ -451,11 +451,11 @@ void MergedPropagation::cross_face(Half half, std::size_t entry) {
     point.sigma = piece.at(t);
     point.turn = piece.direction(t);
     point.gain = 0;
-    go_on(half, point, {first, last});
+    continue_piece(half, point, {first, last});
   };
   if (entry > 0 && !entries[entry - 1].fresh && entries[entry - 1].piece.end == piece.begin) {
     const FrontPiece& left = entries[entry - 1].piece;
-    if (opens_left(left.from, piece.from, piece.begin)) {
+    if (is_left_of(left.from, piece.from, piece.begin)) {
       if (extends(piece, piece.begin, left.from, reach))
         rays.first = left.from;
       else
@@ -464,69 +464,71 @@ void MergedPropagation::cross_face(Half half, std::size_t entry) {
   }
   if (entry + 1 < entries.size() && entries[entry + 1].piece.begin == piece.end) {
     const FrontPiece& right = entries[entry + 1].piece;
-    if (opens_left(piece.from, right.from, piece.end)) {
+    if (is_left_of(piece.from, right.from, piece.end)) {
       if (extends(piece, piece.end, right.from, reach))
         rays.last = right.from;
       else
         origin_at(piece.end, piece.from, right.from);
     }
   }
-  go_on(half, piece, rays);
+  continue_piece(half, piece, rays);
 }
 
 /// Continues a piece through a face, between two rays through the ends of the piece.
-void MergedPropagation::go_on(Half half, const FrontPiece& piece, const Rays& rays) {
-  ++made_;
+void MergedPropagation::continue_piece(Half half, const FrontPiece& piece, const Rays& rays) {
+  ++window_count_;
   const HalfRecord& r = surface_.record(half);
-  if (has_targets()) see_targets_of(half, piece, rays);
+  if (has_targets()) offer_targets_of(half, piece, rays);
   const double first = crossing_to(rays.first, apex(r)), last = crossing_to(rays.last, apex(r));
   const double beside = window_margin * r.length;
-  if (first > piece.begin - beside && last < piece.end + beside) see_apex(half, piece);
-  if (first > piece.begin && r.beyond_left >= 0) go_left(half, piece, rays, last < piece.end);
-  if (last < piece.end && r.beyond_right >= 0) go_right(half, piece, rays, first > piece.begin);
+  if (first > piece.begin - beside && last < piece.end + beside) offer_apex(half, piece);
+  if (first > piece.begin && r.beyond_left >= 0) continue_left(half, piece, rays, last < piece.end);
+  if (last < piece.end && r.beyond_right >= 0) continue_right(half, piece, rays, first > piece.begin);
 }
 
-void MergedPropagation::see_apex(Half half, const FrontPiece& piece) {
+void MergedPropagation::offer_apex(Half half, const FrontPiece& piece) {
   const HalfRecord& r = surface_.record(half);
   const double d = piece.sigma + distance(piece.from, apex(r));
   if (!shorten(r.apex, d)) return;
   reached_[r.apex] = reached_by(half, piece, apex(r));
-  nearer(static_cast<std::size_t>(r.apex), d, piece.error + lacking(piece, apex(r)));
+  nearer(static_cast<std::size_t>(r.apex), d, piece.error + missing_length(piece, apex(r)));
 }
 
-void MergedPropagation::go_left(Half half, const FrontPiece& piece, const Rays& rays, bool to_apex) {
+void MergedPropagation::continue_left(Half half, const FrontPiece& piece, const Rays& rays, bool to_apex) {
   const HalfRecord& r = surface_.record(half);
   FrontPiece child = piece;
   child.begin = std::max(0.0, hit_left(r, rays.first, piece.begin));
   child.end = to_apex ? r.left : std::min(r.left, hit_left(r, rays.last, piece.end));
-  if (!(child.end - child.begin > least_width * r.left)) return;
+  if (!(child.end - child.begin > min_width * r.left)) return;
   child.from = beyond_left(r, piece.from);
   if (child.at(child.begin) > (upper_[r.head] + distance({r.length, 0}, on_left(r, child.begin))) * slack) return;
   if (rays.first != piece.from || rays.last != piece.from)
-    child.error += std::max(lacking(piece, on_left(r, child.begin)), lacking(piece, on_left(r, child.end)));
+    child.error +=
+        std::max(missing_length(piece, on_left(r, child.begin)), missing_length(piece, on_left(r, child.end)));
   child.turn += piece.gain * surface_.angle(half);
-  if (r.mirrored & 1) turn_over(child, r.left);
+  if (r.mirrored & 1) mirror_piece(child, r.left);
   wait(r.beyond_left, child);
 }
 
-void MergedPropagation::go_right(Half half, const FrontPiece& piece, const Rays& rays, bool to_apex) {
+void MergedPropagation::continue_right(Half half, const FrontPiece& piece, const Rays& rays, bool to_apex) {
   const HalfRecord& r = surface_.record(half);
   FrontPiece child = piece;
   child.begin = to_apex ? 0 : std::max(0.0, hit_right(r, rays.first, piece.begin));
   child.end = std::min(r.right, hit_right(r, rays.last, piece.end));
-  if (!(child.end - child.begin > least_width * r.right)) return;
+  if (!(child.end - child.begin > min_width * r.right)) return;
   child.from = exact::beyond_right(r, piece.from);
   if (child.at(child.end) > (upper_[r.tail] + distance({0, 0}, on_right(r, child.end))) * slack) return;
   if (rays.first != piece.from || rays.last != piece.from)
-    child.error += std::max(lacking(piece, on_right(r, child.begin)), lacking(piece, on_right(r, child.end)));
+    child.error +=
+        std::max(missing_length(piece, on_right(r, child.begin)), missing_length(piece, on_right(r, child.end)));
   child.turn -= piece.gain * surface_.angle(next(half));
-  if (r.mirrored & 2) turn_over(child, r.right);
+  if (r.mirrored & 2) mirror_piece(child, r.right);
   wait(r.beyond_right, child);
 }
 
 // ---------------------------------------------------------------------------------------------- results
 
-Reached MergedPropagation::reached_by(Half half, const FrontPiece& piece, const Place& at) const {
+ArrivalRecord MergedPropagation::reached_by(Half half, const FrontPiece& piece, const Place& at) const {
   double direction = piece.turn;
   if (piece.gain != 0) direction += piece.gain * std::atan2(at[1] - piece.from[1], at[0] - piece.from[0]);
   const Index source = origins_[piece.origin].source;
@@ -535,15 +537,15 @@ Reached MergedPropagation::reached_by(Half half, const FrontPiece& piece, const 
   return {half, static_cast<Index>(piece.origin), piece.from, direction};
 }
 
-void MergedPropagation::see_targets_of(Half half, const FrontPiece& piece, const Rays& rays) {
+void MergedPropagation::offer_targets_of(Half half, const FrontPiece& piece, const Rays& rays) {
   const double margin = window_margin * surface_.record(half).length;
-  see_targets(
+  offer_targets(
       half, piece.from, piece.sigma,
       [&](const Place& at) {
         return crossing_to(rays.first, at) > piece.begin - margin && crossing_to(rays.last, at) < piece.end + margin;
       },
       [&](const Place& at) { return reached_by(half, piece, at); },
-      [&](const Place& at) { return piece.error + lacking(piece, at); });
+      [&](const Place& at) { return piece.error + missing_length(piece, at); });
 }
 
 double MergedPropagation::farthest_target() {
@@ -578,7 +580,7 @@ void MergedPropagation::finish() {
 }
 
 std::size_t MergedPropagation::bytes() const {
-  return Propagation::bytes() + waiting_.bytes() + turns_.bytes() + leaving_.bytes() +
+  return Propagation::bytes() + waiting_.bytes() + turns_.bytes() + half_edges_to_clear_.bytes() +
          lists_.capacity() * sizeof(Lists) + pool_.capacity() * sizeof(FrontPiece) + upper_.capacity() * sizeof(double);
 }
 

@@ -121,16 +121,16 @@ class MergedPropagation final : public Propagation {
   void cross_side(const Side& event);
   void gather(const Side& event);
   void keep(Half half);
-  void forget_passed();
+  void discard_passed();
   void leave(Half half);
   void cross_face(Half half, std::size_t entry);
   bool extends(const FrontPiece& piece, double t, const Place& ray, double reach) const;
-  void go_on(Half half, const FrontPiece& piece, const Rays& rays);
-  void go_left(Half half, const FrontPiece& piece, const Rays& rays, bool to_apex);
-  void go_right(Half half, const FrontPiece& piece, const Rays& rays, bool to_apex);
-  void see_apex(Half half, const FrontPiece& piece);
-  void see_targets_of(Half half, const FrontPiece& piece, const Rays& rays);
-  Reached reached_by(Half half, const FrontPiece& piece, const Place& at) const;
+  void continue_piece(Half half, const FrontPiece& piece, const Rays& rays);
+  void continue_left(Half half, const FrontPiece& piece, const Rays& rays, bool to_apex);
+  void continue_right(Half half, const FrontPiece& piece, const Rays& rays, bool to_apex);
+  void offer_apex(Half half, const FrontPiece& piece);
+  void offer_targets_of(Half half, const FrontPiece& piece, const Rays& rays);
+  ArrivalRecord reached_by(Half half, const FrontPiece& piece, const Place& at) const;
   double farthest_target() override;
   void set_full_angles();
   void finish();
@@ -146,7 +146,8 @@ class MergedPropagation final : public Propagation {
   std::vector<double> full_angle_;  ///< angle around each source; infinite on the boundary
   BucketQueue<Side> waiting_;
   BucketQueue<Turn> turns_;
-  BucketQueue<Half> leaving_;  ///< half-edges with passed pieces, by the key from which these may be useless
+  BucketQueue<Half>
+      half_edges_to_clear_;  ///< half-edges with passed pieces, by the key from which these may be useless
   FrontProfile profile_;
 };
 

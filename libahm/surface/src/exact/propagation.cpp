@@ -21,7 +21,7 @@ Propagation::Propagation(const PolyhedralSurface& surface, const ExactOptions& o
     : surface_(surface),
       horizon_(options.radius),
       only_targets_(options.only_targets),
-      most_windows_(options.max_windows),
+      max_windows_(options.max_windows),
       distance_(static_cast<std::size_t>(surface.vertex_count()), infinity),
       target_distance_(targets.size(), infinity),
       reached_(distance_.size() + targets.size()) {
@@ -66,18 +66,18 @@ void Propagation::add_source(const MeshPoint& point) {
     const HalfRecord& r = surface_.record(ray.half);
     offer(r.apex, distance(ray.from, apex(r)), ray, apex(r));
     if ((zeros == 1 && s == zero) || on_line(exact::beyond_right(r, ray.from), r.right))
-      see_beyond_right(ray);
+      light_face_beyond_right(ray);
     else
       light_right(ray, 0, r.right);
     ray = in_next(ray);
   }
-  see_face(ray);
+  offer_targets_in_face(ray);
 }
 
 void Propagation::add_vertex_source(std::uint32_t origin2, Index vertex) {
-  if (distance_[vertex] == infinity) ++met_;
+  if (distance_[vertex] == infinity) ++reached_count_;
   distance_[vertex] = 0;
-  Reached& reached = reached_[vertex];
+  ArrivalRecord& reached = reached_[vertex];
   reached = {-1, static_cast<Index>(origin2 / 2), {}, 0};
   origins_[origin2 / 2].vertex = vertex;
   double turned = 0;
@@ -100,7 +100,7 @@ Propagation::Ray Propagation::in_next(const Ray& ray) const {
 }
 
 /// Handles a source on the right side of a half-edge: it lights the face beyond that side like its own face.
-void Propagation::see_beyond_right(const Ray& ray) {
+void Propagation::light_face_beyond_right(const Ray& ray) {
   const HalfRecord& r = surface_.record(ray.half);
   if (r.beyond_right < 0) return;
   Window w = beyond_right(ray, 0, r.right);
@@ -111,13 +111,13 @@ void Propagation::see_beyond_right(const Ray& ray) {
     if (s != 2) light_right(there, 0, surface_.record(there.half).right);
     there = in_next(there);
   }
-  see_face(there);
+  offer_targets_in_face(there);
 }
 
 /// Starts a window through an interval of the right side of the ray's half-edge.
 void Propagation::light_right(const Ray& ray, double begin, double end) {
   const HalfRecord& r = surface_.record(ray.half);
-  if (r.beyond_right < 0 || !(end - begin > least_width * r.right)) return;
+  if (r.beyond_right < 0 || !(end - begin > min_width * r.right)) return;
   Window w = beyond_right(ray, begin, end);
   if (on_line(w.from, r.right)) return;
   start(w);
@@ -150,12 +150,12 @@ void Propagation::light_corner(const Ray& ray, double low, double high) {
   auto crossing = [&](double phi) { return from[0] - from[1] / std::tan(phi + surface_.angle(next(ray.half))); };
   light_right(ray, high >= angle ? 0.0 : std::max(0.0, crossing(high)),
               low <= 0 ? r.right : std::min(r.right, crossing(low)));
-  see_face(ray);
+  offer_targets_in_face(ray);
 }
 
 // ---------------------------------------------------------------------------------------------- results
 
-Reached Propagation::reach(const Ray& ray, const Place& at) const {
+ArrivalRecord Propagation::reach(const Ray& ray, const Place& at) const {
   const auto origin = static_cast<Index>(ray.origin2 / 2);
   if (ray.origin2 / 2 >= sources_) return {ray.half, origin, ray.from, origins_[origin].direction};
   const double angle = std::atan2(at[1] - ray.from[1], at[0] - ray.from[0]);
@@ -163,9 +163,9 @@ Reached Propagation::reach(const Ray& ray, const Place& at) const {
 }
 
 /// Offers straight paths to all targets in the face where a ray starts.
-void Propagation::see_face(const Ray& ray) {
+void Propagation::offer_targets_in_face(const Ray& ray) {
   if (!has_targets()) return;
-  see_targets(
+  offer_targets(
       ray.half, ray.from, origins_[ray.origin2 / 2].distance, [](const Place&) { return true; },
       [&](const Place& at) { return reach(ray, at); }, [&](const Place&) { return origin_error(ray.origin2 / 2); });
 }
@@ -179,13 +179,13 @@ void Propagation::copy_vertex_targets() {
 }
 
 void Propagation::check_count() const {
-  if (static_cast<double>(made_) > max_windows(surface_.face_count()))
+  if (static_cast<double>(window_count_) > max_windows(surface_.face_count()))
     throw InvalidGeometry("windows_without_end", "windows without end: lengths of sides differ too much",
                           "repair the mesh, or use the heat method");
 }
 
-Found Propagation::found() && {
-  const ExactStatistics statistics{made_, bytes()};
+PropagationResult Propagation::found() && {
+  const ExactStatistics statistics{window_count_, bytes()};
   return {std::move(distance_),
           std::move(target_distance_),
           std::move(reached_),
@@ -195,7 +195,7 @@ Found Propagation::found() && {
 }
 
 std::size_t Propagation::bytes() const {
-  return distance_.capacity() * sizeof(double) + reached_.capacity() * sizeof(Reached) +
+  return distance_.capacity() * sizeof(double) + reached_.capacity() * sizeof(ArrivalRecord) +
          origins_.capacity() * sizeof(Origin) + targets_.capacity() * sizeof(Vec2);
 }
 
@@ -216,7 +216,7 @@ constexpr double wedge_margin = 1e-12;
 ExactPropagation::ExactPropagation(const PolyhedralSurface& surface, const ExactOptions& options,
                                    std::span<const MeshPoint> targets)
     : Propagation(surface, options, targets),
-      sighting_(3 * static_cast<std::size_t>(surface.face_count()), Sighting{infinity, 0}),
+      apex_arrivals_(3 * static_cast<std::size_t>(surface.face_count()), ApexArrival{infinity, 0}),
       windows_(bucket_width * surface.mean_length()),
       bends_(bucket_width * surface.mean_length()) {}
 
@@ -238,7 +238,7 @@ void ExactPropagation::nearer(std::size_t row, double distance, double /*error*/
 void ExactPropagation::bend(const Bend& event) {
   const Index v = event.vertex;
   if (event.distance > distance_[v]) return;
-  const Reached& in = reached_[v];
+  const ArrivalRecord& in = reached_[v];
   const Origin from = origins_[in.origin];
   const auto origin2 = static_cast<std::uint32_t>(2 * origins_.size());
   origins_.push_back({v, from.source, event.distance, in.direction});
@@ -276,7 +276,7 @@ void ExactPropagation::push(const Window& w, double sigma, double at_begin, doub
   const double key = across ? sigma - w.from[1] : std::min(at_begin, at_end);
   if (key > horizon_) return;
   windows_.push(key, w);
-  ++made_;
+  ++window_count_;
 }
 
 /// Whether no shortest path crosses a window, because one of the ends of its half-edge is nearer [XW09].
@@ -290,7 +290,7 @@ void ExactPropagation::cross_face(const Window& w) {
   const double sigma = origins_[w.origin()].distance;
   const double at_begin = sigma + distance(w.from, {w.begin, 0}), at_end = sigma + distance(w.from, {w.end, 0});
   if (loses(w, at_begin, at_end)) return;  // again, as distances may have become shorter since it was queued
-  if (has_targets()) see_targets_of(w, sigma);
+  if (has_targets()) offer_targets_of(w, sigma);
 
   const double crossing = crossing_to(w.from, apex(r));
   const double across = crossing - w.from[0], down = -w.from[1];
@@ -301,35 +301,35 @@ void ExactPropagation::cross_face(const Window& w) {
     to_apex = sigma + distance(w.from, apex(r));
     offer(r.apex, to_apex, {w.half, w.from, w.turn, w.origin2}, apex(r));
     // Only one window continues on both sides of the apex: one angle, one split [CH90].
-    Sighting& best = sighting_[w.half];
+    ApexArrival& best = apex_arrivals_[w.half];
     if (to_apex < best.distance) {
       best = {to_apex, crossing};
-      if (!sighting_from_.empty()) sighting_from_[w.half] = w.from;
+      if (!apex_arrival_origins_.empty()) apex_arrival_origins_[w.half] = w.from;
     } else if (to_apex > best.distance * slack && std::abs(crossing - best.crossing) > same_ray * r.length) {
       const bool rightwards = crossing < best.crossing;
       if (hides(w, rightwards)) (rightwards ? right : left) = false;
     }
   }
-  if (left && r.beyond_left >= 0) go_left(w, r, sigma, crossing < w.end ? to_apex : 0);
-  if (right && r.beyond_right >= 0) go_right(w, r, sigma, crossing > w.begin ? to_apex : 0);
+  if (left && r.beyond_left >= 0) continue_left(w, r, sigma, crossing < w.end ? to_apex : 0);
+  if (right && r.beyond_right >= 0) continue_right(w, r, sigma, crossing > w.begin ? to_apex : 0);
 }
 
 /// Whether all rays of a window to the right (left) of the apex cross the line from the best window's origin to the apex. With
 /// several sources, some rays may pass that origin, if it is a source inside the window.
 bool ExactPropagation::hides(const Window& w, bool right) const {
-  if (sighting_from_.empty()) return true;
-  const Sighting& best = sighting_[w.half];
+  if (apex_arrival_origins_.empty()) return true;
+  const ApexArrival& best = apex_arrivals_[w.half];
   const double last = right ? w.end : w.begin;
-  const double beyond = cross(Place{last, 0} - w.from, sighting_from_[w.half] - w.from);
+  const double beyond = cross(Place{last, 0} - w.from, apex_arrival_origins_[w.half] - w.from);
   return right ? last <= best.crossing || beyond < 0 : last >= best.crossing || beyond > 0;
 }
 
 /// Queues the part of a window that continues through the side tail-apex.
 /// @param to_apex  distance of the apex where the window ends there, otherwise 0
-void ExactPropagation::go_left(const Window& w, const HalfRecord& r, double sigma, double to_apex) {
+void ExactPropagation::continue_left(const Window& w, const HalfRecord& r, double sigma, double to_apex) {
   const double begin = std::max(0.0, hit_left(r, w.from, w.begin));
   const double end = to_apex > 0 ? r.left : std::min(r.left, hit_left(r, w.from, w.end));
-  if (!(end - begin > least_width * r.left)) return;
+  if (!(end - begin > min_width * r.left)) return;
   const Place from = beyond_left(r, w.from);
   if (on_line(from, r.left)) return;
   const double at_begin = sigma + distance(from, {begin, 0});
@@ -343,10 +343,10 @@ void ExactPropagation::go_left(const Window& w, const HalfRecord& r, double sigm
 }
 
 /// Queues the part of a window that continues through the side apex-head.
-void ExactPropagation::go_right(const Window& w, const HalfRecord& r, double sigma, double to_apex) {
+void ExactPropagation::continue_right(const Window& w, const HalfRecord& r, double sigma, double to_apex) {
   const double begin = to_apex > 0 ? 0 : std::max(0.0, hit_right(r, w.from, w.begin));
   const double end = std::min(r.right, hit_right(r, w.from, w.end));
-  if (!(end - begin > least_width * r.right)) return;
+  if (!(end - begin > min_width * r.right)) return;
   const Place from = exact::beyond_right(r, w.from);
   if (on_line(from, r.right)) return;
   const double at_begin = to_apex > 0 ? to_apex : sigma + distance(from, {begin, 0});
@@ -359,9 +359,9 @@ void ExactPropagation::go_right(const Window& w, const HalfRecord& r, double sig
   push(child, sigma, at_begin, at_end);
 }
 
-void ExactPropagation::see_targets_of(const Window& w, double sigma) {
+void ExactPropagation::offer_targets_of(const Window& w, double sigma) {
   const double margin = window_margin * surface_.record(w.half).length;
-  see_targets(
+  offer_targets(
       w.half, w.from, sigma,
       [&](const Place& at) {
         const double crossing = crossing_to(w.from, at);
@@ -375,7 +375,8 @@ void ExactPropagation::see_targets_of(const Window& w, double sigma) {
 
 void ExactPropagation::run(const Progress& progress) {
   const auto inside = [](const Origin& source) { return source.vertex < 0; };
-  if (sources_ > 1 && std::any_of(origins_.begin(), origins_.end(), inside)) sighting_from_.resize(sighting_.size());
+  if (sources_ > 1 && std::any_of(origins_.begin(), origins_.end(), inside))
+    apex_arrival_origins_.resize(apex_arrivals_.size());
   drain(
       bends_, [this](const Bend& b) { bend(b); }, windows_, [this](const Window& w) { cross_face(w); }, progress);
   progress.step("windows", 1);
@@ -390,8 +391,8 @@ double ExactPropagation::farthest_target() {
 }
 
 std::size_t ExactPropagation::bytes() const {
-  return Propagation::bytes() + windows_.bytes() + bends_.bytes() + sighting_.capacity() * sizeof(Sighting) +
-         sighting_from_.capacity() * sizeof(Place);
+  return Propagation::bytes() + windows_.bytes() + bends_.bytes() + apex_arrivals_.capacity() * sizeof(ApexArrival) +
+         apex_arrival_origins_.capacity() * sizeof(Place);
 }
 
 namespace {
@@ -441,11 +442,11 @@ std::vector<Shortcut> shortcuts(const PolyhedralSurface& surface, const Strip& s
 }  // namespace
 
 TautLine pass_other_side(const PolyhedralSurface& surface, Strip& strip, TautLine line) {
-  constexpr std::size_t most_tries = 8;
+  constexpr std::size_t max_tries = 8;
   for (bool shorter = true; shorter;) {
     shorter = false;
     std::vector<Shortcut> found = shortcuts(surface, strip, line);
-    if (found.size() > most_tries) found.resize(most_tries);
+    if (found.size() > max_tries) found.resize(max_tries);
     for (const Shortcut& shortcut : found) {
       const auto around = other_side(surface, strip, line, shortcut.around);
       if (!around) continue;

@@ -194,7 +194,7 @@ struct Window {
 };
 
 /// Properties of a reached vertex or target, except its distance.
-struct Reached {
+struct ArrivalRecord {
   Half half = -1;  ///< as in `Arrival`
   Index origin = -1;
   Place from{};
@@ -202,16 +202,16 @@ struct Reached {
 };
 
 /// Results of a propagation.
-struct Found {
+struct PropagationResult {
   std::vector<double> distance, target_distance;  ///< infinite: not reached
-  std::vector<Reached> reached;                   ///< vertices, then targets
+  std::vector<ArrivalRecord> reached;             ///< vertices, then targets
   std::vector<Origin> origins;                    ///< sources first; directions are unscaled angles
   double horizon;                                 ///< distances up to this are final
   ExactStatistics statistics;
 };
 
 /// Margin around a window in which points are still covered, and minimum width of a window; relative to the side.
-inline constexpr double window_margin = 1e-12, least_width = 1e-14;
+inline constexpr double window_margin = 1e-12, min_width = 1e-14;
 /// A window is dropped where its distance exceeds a known distance by more than this factor.
 inline constexpr double slack = 1 + 1e-12;
 /// Width of a bucket in mean side lengths.
@@ -234,7 +234,7 @@ class Propagation {
   virtual void run(const Progress& progress) = 0;
 
   /// Returns the results and ends the propagation.
-  Found found() &&;
+  PropagationResult found() &&;
 
  protected:
   virtual std::size_t bytes() const;  ///< memory in use
@@ -266,11 +266,11 @@ class Propagation {
   Ray in_next(const Ray& ray) const;
   static void mirror(Window& w, double length);
 
-  Reached reach(const Ray& ray, const Place& at) const;
+  ArrivalRecord reach(const Ray& ray, const Place& at) const;
   /// Sets a shorter distance of a vertex; returns false if it is not shorter.
   bool shorten(Index vertex, double distance) {
     if (!(distance < distance_[vertex])) return false;
-    if (distance_[vertex] == infinity) ++met_;
+    if (distance_[vertex] == infinity) ++reached_count_;
     distance_[vertex] = distance;
     return true;
   }
@@ -287,8 +287,8 @@ class Propagation {
   /// @param reached  reached(at): properties of a target there
   /// @param error    error(at): error of its distance
   template <class Covers, class Reach, class Error>
-  void see_targets(Half half, const Place& from, double sigma, const Covers& covers, const Reach& reached,
-                   const Error& error);
+  void offer_targets(Half half, const Place& from, double sigma, const Covers& covers, const Reach& reached,
+                     const Error& error);
   double origin_error(std::size_t origin) const {
     return origin < sources_ || origin_error_.empty() ? 0.0 : origin_error_[origin - sources_];
   }
@@ -297,32 +297,32 @@ class Propagation {
   /// Checks the number of windows.
   /// @throws InvalidGeometry where windows run in circles
   void check_count() const;
-  double fraction() const { return met_ / static_cast<double>(distance_.size()); }
+  double fraction() const { return reached_count_ / static_cast<double>(distance_.size()); }
 
   const PolyhedralSurface& surface_;
   double horizon_;
   bool only_targets_;
-  Offset most_windows_;  ///< maximum number of windows; 0: no limit
+  Offset max_windows_;  ///< maximum number of windows; 0: no limit
   std::size_t sources_ = 0;
   std::vector<double> distance_, target_distance_;
-  std::vector<Reached> reached_;
+  std::vector<ArrivalRecord> reached_;
   std::vector<Origin> origins_;
   std::vector<double> origin_error_;  ///< errors of the origins after the sources; empty: 0
   std::vector<Index> target_vertex_;  ///< vertex of each target; -1: none
-  Offset made_ = 0;
+  Offset window_count_ = 0;
 
  private:
   void place_targets(std::span<const MeshPoint> targets);
   void add_vertex_source(std::uint32_t origin2, Index vertex);
-  void see_beyond_right(const Ray& ray);
+  void light_face_beyond_right(const Ray& ray);
   void light_right(const Ray& ray, double begin, double end);
   Window beyond_right(const Ray& ray, double begin, double end) const;
-  void see_face(const Ray& ray);
+  void offer_targets_in_face(const Ray& ray);
 
   std::vector<Vec2> targets_;            ///< positions of the targets in the frame of side 0 of their faces
   std::vector<Index> target_order_;      ///< numbers of the targets, sorted by face
   std::vector<Offset> targets_of_face_;  ///< first entry of each face in `target_order_`, faces + 1; empty: no targets
-  Index met_ = 0;                        ///< number of vertices with a distance
+  Index reached_count_ = 0;              ///< number of vertices with a distance
 };
 
 template <class Vertices, class AtVertex, class Windows, class AtWindow>
@@ -334,7 +334,7 @@ void Propagation::drain(Vertices& vertices, const AtVertex& at_vertex, Windows& 
     if (windows.key() > horizon_) break;
     if (only_targets_) horizon_ = std::min(horizon_, farthest_target());
     if (windows.key() > horizon_) break;
-    if (most_windows_ > 0 && made_ >= most_windows_) {
+    if (max_windows_ > 0 && window_count_ >= max_windows_) {
       horizon_ = windows.key();
       break;
     }
@@ -351,8 +351,8 @@ void Propagation::drain(Vertices& vertices, const AtVertex& at_vertex, Windows& 
 }
 
 template <class Covers, class Reach, class Error>
-void Propagation::see_targets(Half half, const Place& from, double sigma, const Covers& covers, const Reach& reached,
-                              const Error& error) {
+void Propagation::offer_targets(Half half, const Place& from, double sigma, const Covers& covers, const Reach& reached,
+                                const Error& error) {
   const Index face = half / 3;
   const HalfRecord& side0 = surface_.record(3 * face);
   const HalfRecord& r = surface_.record(half);
@@ -364,7 +364,7 @@ void Propagation::see_targets(Half half, const Place& from, double sigma, const 
     const double d = sigma + distance(from, at);
     if (!(d < target_distance_[target]) || !covers(at)) continue;
     target_distance_[target] = d;
-    Reached& there = reached_[distance_.size() + target];
+    ArrivalRecord& there = reached_[distance_.size() + target];
     there = reached(at);
     there.from = s == 0 ? from : s == 1 ? in_previous(r, from) : exact::in_next(r, from);
     there.half = 3 * face;
@@ -387,7 +387,7 @@ class ExactPropagation final : public Propagation {
     double distance;
   };
   /// The apex of a half-edge, as reached by the best of the windows that cross the half-edge.
-  struct Sighting {
+  struct ApexArrival {
     double distance;
     double crossing;
   };
@@ -400,15 +400,15 @@ class ExactPropagation final : public Propagation {
 
   inline bool loses(const Window& w, double at_begin, double at_end) const;
   void cross_face(const Window& w);
-  inline void go_left(const Window& w, const HalfRecord& r, double sigma, double to_apex);
-  inline void go_right(const Window& w, const HalfRecord& r, double sigma, double to_apex);
+  inline void continue_left(const Window& w, const HalfRecord& r, double sigma, double to_apex);
+  inline void continue_right(const Window& w, const HalfRecord& r, double sigma, double to_apex);
   inline void push(const Window& w, double sigma, double at_begin, double at_end);
   bool hides(const Window& w, bool right) const;
-  void see_targets_of(const Window& w, double sigma);
+  void offer_targets_of(const Window& w, double sigma);
   double farthest_target() override;
 
-  std::vector<Sighting> sighting_;    ///< best window of each half-edge
-  std::vector<Place> sighting_from_;  ///< origin of that window; empty: not needed
+  std::vector<ApexArrival> apex_arrivals_;   ///< best window of each half-edge
+  std::vector<Place> apex_arrival_origins_;  ///< origin of that window; empty: not needed
   BucketQueue<Window> windows_;
   BucketQueue<Bend> bends_;
 };

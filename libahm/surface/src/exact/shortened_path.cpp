@@ -170,7 +170,7 @@ Strip strip_along(const PolyhedralSurface& surface, std::span<const MeshPoint> c
 namespace {
 
 /// A line that passes a vertex at a smaller angle than this bends there, so that its other side is considered.
-constexpr double touching = 1e-12;
+constexpr double touch_angle = 1e-12;
 
 Place turned_left(const Place& v) { return {-v[1], v[0]}; }
 
@@ -181,10 +181,10 @@ Portal first_portal(const PolyhedralSurface& surface, Half side, bool mirrored) 
 }
 
 /// The unfolded frame of a half-edge that enters a face.
-struct Unfolded {
+struct UnfoldedFrame {
   Place tail, along, up;
 
-  Unfolded(const Portal& portal) : tail(portal.tail_left ? portal.left : portal.right) {
+  UnfoldedFrame(const Portal& portal) : tail(portal.tail_left ? portal.left : portal.right) {
     const Place across = portal.right - portal.left;
     const Place unit = (1 / norm(across)) * across;
     along = portal.tail_left ? unit : -unit;
@@ -196,7 +196,7 @@ struct Unfolded {
 
 /// The next portal: one end stays, the other one is the apex.
 Portal next_portal(const PolyhedralSurface& surface, const Portal& portal, Half entered, Half side) {
-  const Place top = Unfolded(portal).out_of(apex(surface.record(entered)));
+  const Place top = UnfoldedFrame(portal).out_of(apex(surface.record(entered)));
   const bool keeps_tail = side == previous(entered), forward = portal.tail_left;
   const bool tail_left = forward != mirrored_beyond(surface, side);
   return keeps_tail == forward ? Portal{portal.left, top, tail_left} : Portal{top, portal.right, tail_left};
@@ -237,7 +237,7 @@ class Funnel {
       const std::size_t a = own[own.size() - 2], b = own.back();
       const double sine = turn(a, b);
       const bool beyond_b = dot(nodes_[b].at - nodes_[a].at, at - nodes_[b].at) > 0;
-      if (sine > touching || (sine > -touching && beyond_b)) break;
+      if (sine > touch_angle || (sine > -touch_angle && beyond_b)) break;
       own.pop_back();
     }
     if (own.size() - own_apex == 1) {
@@ -245,7 +245,7 @@ class Funnel {
       while (other.size() - other_apex > 1) {
         const std::size_t a = other[other_apex], b = other[other_apex + 1];
         const double sine = turn(a, b);
-        if (sine > touching || (sine > -touching && !is_ahead(a, b))) break;
+        if (sine > touch_angle || (sine > -touch_angle && !is_ahead(a, b))) break;
         ++other_apex;
         own.assign(1, b);
         own_apex = 0;
@@ -291,7 +291,7 @@ class Funnel {
 Place end_of(const PolyhedralSurface& surface, const Strip& strip, const std::vector<Portal>& portals) {
   const Place inside = surface.place(strip.end.point);
   if (portals.empty()) return inside;
-  return Unfolded(portals.back()).out_of(from_first_side(surface, strip.entered.back(), inside));
+  return UnfoldedFrame(portals.back()).out_of(from_first_side(surface, strip.entered.back(), inside));
 }
 
 }  // namespace
@@ -334,7 +334,7 @@ TautLine pull_taut(const PolyhedralSurface& surface, const Strip& strip) {
   for (std::size_t k = 1; k < line.bends.size(); ++k) line.length += distance(line.bends[k].at, line.bends[k - 1].at);
   line.arrival = line.bends[line.bends.size() - 2].at;
   if (!line.portals.empty())
-    line.arrival = to_first_side(surface, strip.entered.back(), Unfolded(line.portals.back()).into(line.arrival));
+    line.arrival = to_first_side(surface, strip.entered.back(), UnfoldedFrame(line.portals.back()).into(line.arrival));
   return line;
 }
 
@@ -465,9 +465,9 @@ using std::numbers::pi;
 using Halves = std::vector<Half>;
 
 /// Maximum number of turns of a loop that are concatenated to find where it bends permanently.
-constexpr int most_turns = 4096;
+constexpr int max_turns = 4096;
 /// Maximum number of moves of the base. Every move makes the loop shorter.
-constexpr int most_moves = 1000000;
+constexpr int max_moves = 1000000;
 
 /// A closed walk over faces, and the loop in it through a base point.
 class Loop {
@@ -480,24 +480,24 @@ class Loop {
   }
 
   GeodesicPath tighten() {
-    for (int moves = 0; moves < most_moves; ++moves) {
+    for (int moves = 0; moves < max_moves; ++moves) {
       if (strip_.entered.empty()) return shrunk();
-      const std::optional<Halves> closing = closed_at_base();
+      const std::optional<Halves> closing = closing_half_edges();
       if (!closing) return path_along(surface_, strip_, line_);
-      const std::vector<std::pair<Half, bool>> bends = bent_at();
+      const std::vector<std::pair<Half, bool>> bends = bend_half_edges();
       Halves walk = strip_.entered;
       for (Half h : *closing) enter(surface_, walk, h);
       cancel_ends(walk);
       if (walk.empty()) return shrunk();
-      if (!take_base(walk, bends)) return path_along(surface_, strip_, line_);
+      if (!move_base(walk, bends)) return path_along(surface_, strip_, line_);
     }
-    throw Error("a loop still became shorter after " + std::to_string(most_moves) + " moves");
+    throw Error("a loop still became shorter after " + std::to_string(max_moves) + " moves");
   }
 
  private:
   /// Half-edges from the last face of the strip to its first, around the side of the base on which the loop is shorter; none
   /// where the loop is taut at the base.
-  std::optional<Halves> closed_at_base() const {
+  std::optional<Halves> closing_half_edges() const {
     const Half out = strip_.start.corner, in = strip_.end.corner;
     if (out < 0) {
       if (strip_.start.point.face == strip_.last_face()) return Halves{};
@@ -536,7 +536,7 @@ class Loop {
   }
 
   /// The half-edges at whose ends the line bends, and whether it bends at their tail.
-  std::vector<std::pair<Half, bool>> bent_at() const {
+  std::vector<std::pair<Half, bool>> bend_half_edges() const {
     std::vector<std::pair<Half, bool>> result;
     for (std::size_t k = 1; k + 1 < line_.bends.size(); ++k) {
       const Bend& bend = line_.bends[k];
@@ -555,15 +555,15 @@ class Loop {
 
   /// Moves the base of the loop to a vertex where the loop bends.
   /// @return false if it bends nowhere: then the loop is a straight closed line
-  bool take_base(const Halves& walk, const std::vector<std::pair<Half, bool>>& bends) {
+  bool move_base(const Halves& walk, const std::vector<std::pair<Half, bool>>& bends) {
     for (const auto& [half, at_tail] : bends) {
       const auto found = std::find(walk.begin(), walk.end(), half);
       if (found == walk.end()) continue;
-      base_at(walk, static_cast<std::size_t>(found - walk.begin()), at_tail);
+      set_base(walk, static_cast<std::size_t>(found - walk.begin()), at_tail);
       return true;
     }
-    if (take_straight(walk)) return false;
-    for (int turns = 4; turns <= most_turns; turns *= 2) {
+    if (straighten(walk)) return false;
+    for (int turns = 4; turns <= max_turns; turns *= 2) {
       const Strip many = along(walk, turns, 0.5);
       const TautLine line = pull_taut(surface_, many);
       // A bend that occurs again one turn later is a bend of the shortest loop in this walk.
@@ -573,7 +573,7 @@ class Loop {
                                        [&](const Bend& b) { return b.arrives == bend.arrives + walk.size(); });
         if (!again) continue;
         const std::size_t portal = bend.arrives % walk.size();
-        base_at(walk, portal, corner_after(many, line, bend, bend.arrives) == walk[portal]);
+        set_base(walk, portal, corner_after(many, line, bend, bend.arrives) == walk[portal]);
         return true;
       }
     }
@@ -582,7 +582,7 @@ class Loop {
 
   /// Where one turn of the walk is only a translation, as around a cylinder, the loop may be a straight line. It is placed in
   /// the middle of all lines that stay in the strip.
-  bool take_straight(const Halves& walk) {
+  bool straighten(const Halves& walk) {
     const std::vector<Portal> portals = pull_taut(surface_, along(walk, 2, 0.5)).portals;
     const Portal &first = portals[0], &again = portals[walk.size()];
     const Vec2 before = first.right - first.left, after = again.right - again.left;
@@ -613,7 +613,7 @@ class Loop {
     return strip;
   }
 
-  void base_at(const Halves& walk, std::size_t portal, bool at_tail) {
+  void set_base(const Halves& walk, std::size_t portal, bool at_tail) {
     const Half corner = at_tail ? walk[portal] : next(walk[portal]);
     strip_.start.corner = corner;
     strip_.start.point = {corner / 3, {0, 0, 0}};

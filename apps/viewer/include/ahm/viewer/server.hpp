@@ -1,5 +1,5 @@
 /// \file
-/// Serves a session to a browser on this machine, and to nobody else.
+/// Serves a session to browsers on this machine only.
 ///
 /// \code
 /// ahm::viewer::Server server(session);
@@ -15,29 +15,32 @@
 
 namespace ahm::viewer {
 
-/// Whether this build can serve (needs cpp-httplib and three.js).
+/// Whether this build can serve pages (requires cpp-httplib and three.js).
 bool can_serve() noexcept;
 
-/// Listens on 127.0.0.1 only. All of its addresses begin with a token of 128 bits from the system's random numbers; the
-/// rest of what a request tells has to fit too: Host (so that no other name leads here), Origin where there is one, JSON
-/// bodies of a stated length of at most 1 MiB, no encodings, no ranges. Whatever does not is refused before its body is read.
-/// There are no files to be reached: every answer comes from the session.
+/// An HTTP server on 127.0.0.1. All of its addresses begin with a random token of 128 bits. It rejects the following requests before it
+/// reads their bodies:
+/// - without the token, with another Host than this machine and port, or with another Origin
+/// - with a body that is not JSON, has no Content-Length, or exceeds 1 MiB (32 MiB for exports)
+/// - with encodings or ranges
+///
+/// The server does not serve files. The session computes all answers.
 class Server {
  public:
   /// @param session  must outlive the server
-  /// @param port     0: any that is free
-  /// @throws Error (the port is taken; this build cannot serve)
+  /// @param port     0: any free port
+  /// @throws Error (the port is in use; this build cannot serve pages)
   explicit Server(const Session& session, int port = 0);
   ~Server();
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
 
   int port() const;
-  /// With the token, and a slash at the end.
+  /// URL of the page, with the token and a trailing slash.
   std::string address() const;
-  /// Serves until `stop`; once.
+  /// Serves requests until `stop` is called. May be called once.
   void run();
-  /// Before `run` or from another thread; returns when nothing is served any more.
+  /// Stops the server, and returns when `run` has finished. May be called before `run`, or from another thread.
   void stop();
 
  private:

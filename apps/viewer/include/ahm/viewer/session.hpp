@@ -1,6 +1,6 @@
 /// \file
-/// A surface and the maps on it that somebody asks for one after the other: what the viewer's page talks to. Knows nothing
-/// of sockets; `Server` is the way to it.
+/// A session of the viewer: answers requests for maps, paths and exports on one surface. Independent of sockets; `Server` makes it
+/// accessible to browsers.
 ///
 /// \code
 /// const ahm::viewer::Session session(surface, geometry, {.title = "scan.ply", .input = "scan.ply"});
@@ -26,82 +26,82 @@
 
 namespace ahm::viewer {
 
-/// How maps are made.
+/// Options of maps.
 struct Settings {
   Method method = Method::heat;
   Variant variant = Variant::adaptive;
   double t_coef = 1;             ///< > 0
   std::optional<double> radius;  ///< world units, > 0
-  std::optional<Vec3> u_axis;    ///< a vector of space
-  double tolerance = 0;          ///< of exact maps (`ExactMapOptions`)
+  std::optional<Vec3> u_axis;    ///< direction in world coordinates
+  double tolerance = 0;          ///< tolerance of exact maps (`ExactMapOptions`)
 };
 
 struct SessionOptions {
-  std::string title;  ///< of the page
-  /// INPUT and the options with which it was opened, as they stand in a command line.
+  std::string title;  ///< title of the page
+  /// The argument INPUT and its options, in the form of a command line.
   std::string input, input_options;
-  Settings settings;                        ///< that the page starts with
-  std::optional<SurfacePoint> source = {};  ///< that it starts from; none: what lies in the middle of the picture
+  Settings settings;                        ///< initial settings of the page
+  std::optional<SurfacePoint> source = {};  ///< initial source; nullopt: the center of the picture
   unsigned threads = 0;                     ///< 0: one per core
-  /// Writes a map, from a point or a curve, by row to a file, by its ending; none: nothing is exported.
+  /// Writes a map from a point or a curve to a file, by row; the extension selects the format. Empty: no export.
   std::function<void(const std::filesystem::path&, const RowLogMap&, const std::vector<double>& quality)> write = {};
-  /// Likewise a path, a tool path, and a decal.
+  /// Writes a path, a tool path, or a decal to a file.
   std::function<void(const std::filesystem::path&, const std::vector<Vec3>&)> write_path = {};
   std::function<void(const std::filesystem::path&, const CoveragePath&)> write_coverage = {};
   std::function<void(const std::filesystem::path&, const InverseMap&, const DecalOptions&, const Image&)> write_decal =
       {};
-  /// Endings that these know, without the dot, by what is written: map, stroke, path, coverage, decal.
+  /// Extensions that these functions support, without the dot, for each kind of result: map, stroke, path, coverage, decal.
   std::map<std::string, std::vector<std::string>> formats = {};
-  std::function<std::string(const Error&)> worded = {};  ///< messages in the caller's words; none: what()
+  std::function<std::string(const Error&)> worded = {};  ///< formats error messages; empty: what()
 };
 
-/// What is sent back.
+/// The answer to a request.
 struct Answer {
-  int status = 200;  ///< of HTTP
-  std::string type;  ///< of the body
+  int status = 200;  ///< HTTP status
+  std::string type;  ///< content type of the body
   std::string body;
 };
 
-/// A point as SPEC of a command: 42, face:7:0.2,0.3,0.5, or x,y,z.
+/// A point in the format SPEC of the command line: 42, face:7:0.2,0.3,0.5, or x,y,z.
 std::string spec(const Surface& surface, const SurfacePoint& point);
 
-/// Immutable but for what is kept of solvers; all members may be called from many threads at once. Maps are made one after
-/// the other, each on all threads.
+/// Answers requests on a surface. All members may be called from many threads at once. Maps are computed one at a time, each with all
+/// threads. The session keeps solvers for later requests.
 ///
-/// Requests are JSON objects. A point is {"row": 42} or {"face": 7, "weights": [0.2, 0.3, 0.5]}. With a map go, each by
-/// choice, "method", "variant", "t_coef", "radius" (null: none), "u_axis". Rows of a cloud that were left out before
-/// its graph was built are not drawn; for such a row the nearest one that was not stands.
+/// Requests are JSON objects. A point is {"row": 42} or {"face": 7, "weights": [0.2, 0.3, 0.5]}. Requests for maps have the optional
+/// members "method", "variant", "t_coef", "radius" (null: none), "u_axis". Rows of a cloud that were removed before its graph was built
+/// are not drawn. Such a row in a request is replaced by the nearest row with a vertex.
 ///
 /// | name     | request, besides "client"                              | answer                                        |
 /// |----------|--------------------------------------------------------|-----------------------------------------------|
 /// | surface  | none                                                   | bundle of the surface                         |
-/// | info     | none                                                   | JSON: counts, choices, what to start with     |
+/// | info     | none                                                   | JSON: counts, choices, initial settings       |
 /// | map      | "source"                                               | bundle of the map, with "spec", "command"     |
 /// | stroke   | "points": along a curve                                | bundle of the map, with the curve             |
-/// | path     | "from", "to" (meshes)                                  | JSON: "points", "length", "command"           |
+/// | path     | "from", "to"                                           | JSON: "points", "length", "command"           |
 /// | coverage | "source", "cover": radius, "spacing", "pattern"        | JSON: "points", "pieces", "length", "covered" |
-/// | export   | "what" of these it is, "format", and what it asks for  | the file that the command writes              |
+/// | export   | "what", "format", and the members of such a request    | the file that the command writes              |
 ///
-/// "what" is "map", "stroke", "path", "coverage", or "decal", which asks for "source", "image": a PNG or JPEG file in base64, "size":
-/// its longer side, and "angle" in degrees.
+/// "what" is "map", "stroke", "path", "coverage" or "decal". A decal requires "source", "image" (a PNG or JPEG file in base64), "size" (of
+/// the longer side) and "angle" (degrees).
 ///
-/// A newer request for a map or a stroke by the same client cancels the older one, and so does one for a path or a tool path
-/// those of its kind; what is cancelled is answered with status 409. The end of the session cancels all. Newer is what comes later; of a client that
-/// counts its requests, by choice, with "number", what has the greater one, since requests may overtake each other.
-/// What cannot be answered has the status 400, 404 or 503 and a JSON object with "error".
+/// A newer request of the same client cancels an older one of the same kind. Maps and strokes are one kind; paths and tool paths are the
+/// others. Cancelled requests return status 409. The end of the session cancels all requests. Requests may arrive in a different order, so
+/// clients may number them with "number"; the greater number is newer. Without numbers, the later request is newer.
+/// Requests that fail return status 400, 404, 500 or 503, and a JSON object with "error".
 class Session {
  public:
-  /// Makes the page's data, and the default solver in the background.
+  /// Computes the data of the page, and in the background the default solver.
   /// @param surface, geometry  must outlive the session
-  /// @throws InvalidGeometry (nothing to show)
+  /// @throws InvalidGeometry (no point to show)
   Session(const Surface& surface, const io::Geometry& geometry, SessionOptions options);
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  /// The page itself. @param nonce  as of `render::live_page`
+  /// The HTML page. @param nonce  as in `render::live_page`
   std::string page(const std::string& nonce) const;
-  /// Never throws but for memory. @param body  empty for surface and info
+  /// Answers a request. Throws only if memory is exhausted. @param body  empty for surface and info
   Answer answer(std::string_view name, std::string_view body) const;
 
  private:

@@ -83,7 +83,7 @@ class TiledGraph final : public TangentGraph {
   };
   const Tile& tile(std::size_t number) const;
   const Tile& tile_at(Index& vertex) const;
-  void give_back() const;
+  void release_memory() const;
 
   std::filesystem::path folder_;
   Manifest manifest_;

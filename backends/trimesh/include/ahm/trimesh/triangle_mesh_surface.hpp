@@ -113,14 +113,14 @@ class TriangleMeshSurface final : public Surface {
   std::vector<Vec2> to_corners(const LogMap& map) const override;
 
   /// Position of a point of a face in the intrinsic triangulation.
-  struct Located {
+  struct IntrinsicPoint {
     Triangle vertices;                  ///< corners of the intrinsic face
     std::array<double, 3> barycentric;  ///< weights of these vertices
     Index depth;                        ///< number of flips on the descent to it
   };
   /// Finds a point of a face in the intrinsic triangulation.
   /// @throws InvalidArgument (as `source`)
-  Located locate(const FacePoint& point) const;
+  IntrinsicPoint locate(const FacePoint& point) const;
 
  protected:
   SurfaceSource source_in_face(const FacePoint& point, const std::optional<Vec3>& u_axis) const override;

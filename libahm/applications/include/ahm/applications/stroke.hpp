@@ -39,7 +39,7 @@ struct StrokeOptions {
 
 /// The source along an edge path, d = 2. The weight of a vertex is half of its two edges. Its u axis turns with the curve.
 /// v is positive on the left of the curve, as seen in the frame of the first vertex.
-/// @param path  vertex numbers, at least 2, closed: 3
+/// @param path  vertex numbers, at least 2, or 3 if closed
 /// @throws InvalidArgument (dimension, length, index, consecutive vertices that are not neighbors, a path that turns back
 /// or closes along a one-sided band, `circle` on an open path)
 Source stroke_source(const TangentGraph& graph, std::span<const Vertex> path, const StrokeOptions& options = {});
@@ -63,9 +63,9 @@ Source stroke_source(std::span<const StrokePoint> points);
 
 /// The points of a polyline, parameterized by arclength. Weights, positions and angles follow from the lengths of the
 /// segments.
-/// @param points   at least 2, closed: 3; sources whose u axis points along the curve and whose v axis points to its left
-/// @param lengths  > 0: lengths[k] is the length from point k to the next one, world units; one fewer than points, closed:
-/// as many
+/// @param points   at least 2, or 3 if closed; sources whose u axis points along the curve and whose v axis points to its left
+/// @param lengths  > 0: lengths[k] is the length from point k to the next one, world units; one fewer than points, or
+/// as many if closed
 /// @throws InvalidArgument (counts, a length, a source that is not of dimension 2, `circle` on an open curve)
 std::vector<StrokePoint> stroke_points(std::span<const Source> points, std::span<const double> lengths,
                                        const StrokeOptions& options = {});
@@ -106,8 +106,8 @@ struct SurfaceCurve {
 /// (`shortest_line`). On clouds, points closer than two edges are joined by straight lines. On twisted polygons all lines
 /// are straight in space (`SurfaceCurve::straight`); choose points so close that the lines stay near the surface.
 /// @throws InvalidArgument (as `Surface::source`; faults curve_too_long: more than a million pieces, curve_too_short: fewer
-/// than 2 different points, closed: 3, curve_turns_back at an input point, curve_one_sided: closed along a one-sided band),
-/// as `stroke_source`
+/// than 2 different points, or 3 if closed, curve_turns_back at an input point, curve_one_sided: closed along a one-sided
+/// band), as `stroke_source`
 SurfaceCurve draw_curve(const Surface& surface, std::span<const CurvePoint> given, const StrokeOptions& options = {});
 
 /// A curve with user-defined coordinates.

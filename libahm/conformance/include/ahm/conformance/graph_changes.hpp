@@ -19,17 +19,17 @@ CsrGraphData doubled(const CsrGraphData& graph);
 
 /// A graph with every frame turned at random: components in frame i are multiplied by Q_i. On `block` graphs every other
 /// frame is mirrored as well.
-struct Turned {
+struct TurnedGraph {
   CsrGraphData data;
   std::vector<double> turns;  ///< Q_i, n x d x d, row major
 };
-Turned with_frames_turned(const CsrGraphData& graph, unsigned seed = 1);
+TurnedGraph with_frames_turned(const CsrGraphData& graph, unsigned seed = 1);
 
 /// A graph with every 2 x 2 rotation stored as a block.
 CsrGraphData as_blocks(const CsrGraphData& rotations);
 
 /// A graph with its vertices renumbered: vertex i becomes order[i].
-CsrGraphData relabelled(const CsrGraphData& graph, const std::vector<Index>& order);
+CsrGraphData relabeled(const CsrGraphData& graph, const std::vector<Index>& order);
 
 /// A graph seen from the other side: every frame is mirrored in its x axis.
 CsrGraphData mirrored(const CsrGraphData& graph);

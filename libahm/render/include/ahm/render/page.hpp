@@ -1,21 +1,22 @@
 /// \file
-/// The HTML page of a surface and its maps, and the data it draws: what `write_html` embeds and a server sends.
+/// The HTML page of a surface and its maps, and the data that the page draws. `write_html` embeds the data; a server sends it.
 ///
 /// \code
-/// const ahm::render::PageSurface surface(scene);              // positions, faces, normals: made once
+/// const ahm::render::PageSurface surface(scene);              // positions, faces, normals: computed once
 /// send(surface.bundle());
 /// send(surface.map_bundle(scene_with_u_and_v));             // then one per map
 /// \endcode
 ///
-/// A bundle is "AHM1", the length of a JSON text as little-endian u32, that text, and arrays. The text's "arrays" tells of
-/// each by its name the type (f32, u8, u16, i32, u32), where it begins, counted from the end of the text, and how many
-/// numbers it has. Both are multiples of four bytes. Lengths are in units of the surface's "scale", positions relative to
-/// its "center".
+/// A bundle consists of "AHM1", the length of a JSON text as little-endian u32, the text, and arrays. The JSON object "arrays" contains
+/// for each array its type (f32, u8, u16, i32, u32), its position in bytes after the text, and its number of elements. The text and the
+/// arrays are padded to multiples of four bytes. Lengths are in units of the surface's "scale"; positions are relative to "center".
 ///
-/// Of a surface: positions (3), discs (normal as 255ths of [-1, 1], radius as 255ths of "largest_radius"), points (the
-/// row of each vertex), colors (4), triangles, faces (the face of each triangle), corners (of that face, three, and how many
-/// it has; where they have more than three).
-/// Of a map, by row: uv (2), distance, spread, quality, status; by vertex of a cloud: slopes (6 bytes, 127 for zero).
+/// Arrays of a surface; numbers of elements in parentheses:
+/// - positions (3), discs (4: normal as 255ths of [-1, 1], radius as 255ths of "largest_radius"), points (row of each vertex), colors (4)
+/// - triangles (3), faces (face of each triangle)
+/// - corners (4: three corners of the face, and the number of its corners), if there are faces with more than three corners
+///
+/// Arrays of a map: uv (2), distance, spread, quality, status by row; for clouds slopes (6 bytes, 127 for zero) by vertex.
 #pragma once
 
 #include <memory>
@@ -25,10 +26,10 @@
 
 namespace ahm::render {
 
-/// A surface made ready to be drawn by the page. Immutable; safe to use from many threads.
+/// A surface prepared for drawing by the page. Immutable; safe to use from many threads.
 class PageSurface {
  public:
-  /// @param scene  its points, normals, faces, colors and title; if it has a map, the camera shows that
+  /// @param scene  uses the points, normals, faces, colors and title; if there is a map, the camera shows its region
   /// @throws as `draw_picture`
   explicit PageSurface(const Scene& scene, const PictureOptions& options = {});
   ~PageSurface();
@@ -37,12 +38,12 @@ class PageSurface {
 
   /// The surface as a bundle.
   const std::string& bundle() const noexcept;
-  /// A map on it as a bundle.
-  /// @param scene  of the same points
-  /// @param more   further entries of the JSON text: an object, as text
+  /// A map on the surface as a bundle.
+  /// @param scene  map of the same points
+  /// @param more   additional entries of the JSON text: an object, as text
   /// @throws as `draw_picture`
   std::string map_bundle(const Scene& scene, const PictureOptions& options, const std::string& more = "{}") const;
-  /// World units in one of the page's.
+  /// World units per unit of the page.
   double scale() const noexcept;
   /// A position in the page's units.
   Vec3 to_page(const Vec3& position) const;
@@ -52,8 +53,8 @@ class PageSurface {
   std::unique_ptr<const Impl> impl_;
 };
 
-/// The page that asks a server for all data, at addresses beside its own. Empty without three.js.
-/// @param nonce  of the content security policy, for its scripts and its style
+/// The page that requests its data from a server, at addresses relative to its own. Empty if this build has no three.js.
+/// @param nonce  nonce of the content security policy, for the scripts and the style of the page
 std::string live_page(const std::string& title, const std::string& nonce);
 
 }  // namespace ahm::render

@@ -16,21 +16,20 @@
 
 namespace ahm::render {
 
-/// What is shown. The spans are only read, and only during the call.
+/// The contents of a picture. The spans are only read, and only during the call.
 struct TexturedScene {
-  /// Meshes as they are written to files (`io::write_textured`). Transparent parts are laid over the others.
+  /// Meshes, as for `io::write_textured`. Transparent parts are drawn over the others.
   std::span<const io::MeshPart> parts;
-  /// Points, with a color each, and the radius of the disc that is drawn in world units; no radii: as far as the
-  /// neighbours.
+  /// Points that are drawn as discs. Each has a color, and optionally a radius, world units. Without radii, discs reach to the neighbors.
   std::span<const Vec3> points = {};
   std::span<const std::array<std::uint8_t, 3>> colors = {};
-  std::span<const Vec3> normals = {};  ///< empty or one per point, either sign
+  std::span<const Vec3> normals = {};  ///< empty or one per point, of either sign
   std::span<const double> radii = {};
-  Vec3 towards{};  ///< what must be seen, if no view direction is given
+  Vec3 towards{};  ///< position that the default view direction shows
 };
 
-/// Renders in memory, on the processor, and writes a PNG file; the file appears complete or not at all.
-/// Of the options size, view direction and upwards count.
+/// Renders on the CPU and writes a PNG file, which appears complete or not at all.
+/// @param options  uses the size, the view direction, the up direction and the number of threads
 /// @throws InvalidArgument (sizes, lengths), InvalidGeometry (nothing to show), IoError
 void write_textured_png(const std::filesystem::path& path, const TexturedScene& scene,
                         const PictureOptions& options = {});

@@ -43,7 +43,7 @@ class FaceTree {
   };
 
   /// The nearest point of one triangle. All lengths times `scale` of the search.
-  struct Look {
+  struct Candidate {
     std::array<double, 3> weights;  ///< barycentric coordinates in the triangle
     Vec3 position;
     double distance, size;  ///< size: the largest coordinate of the triangle
@@ -53,9 +53,9 @@ class FaceTree {
 
   const Vec3& corner(const Piece& piece, int k) const;
   void build(std::size_t begin, std::size_t end);
-  template <class LookAt>
-  void visit(std::size_t number, const Search& search, const LookAt& look_at) const;
-  Look look(const Piece& piece, const Vec3& from, double scale) const;
+  template <class Visitor>
+  void visit(std::size_t number, const Search& search, const Visitor& visitor) const;
+  Candidate nearest_in_piece(const Piece& piece, const Vec3& from, double scale) const;
 
   std::span<const Vec3> positions_;
   FaceList faces_;

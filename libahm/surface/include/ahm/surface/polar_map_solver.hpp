@@ -62,10 +62,10 @@ class PolarMapSolver {
 
   const TangentGraph* graph_;
   const Surface* surface_ = nullptr;
-  std::shared_ptr<const Wavefront::OneRings> stars_;
+  std::shared_ptr<const Wavefront::OneRings> one_rings_;
   std::unique_ptr<const CsrGraph>
-      sheet_;  ///< edges of the selected triangles, for clouds; null: those of the graph are used
-  std::shared_ptr<const Wavefront::OneRings> sheet_stars_;
+      triangle_graph_;  ///< edges of the selected triangles, for clouds; null: those of the graph are used
+  std::shared_ptr<const Wavefront::OneRings> triangle_one_rings_;
   std::optional<ExactGeodesics> geodesics_;  ///< none: no flat triangles, or windows disabled
   Offset windows_ = 0;
 };

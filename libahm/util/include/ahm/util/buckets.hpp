@@ -23,7 +23,7 @@ void for_key_ranges(Index keys, unsigned threads, const Body& body) {
 
 /// Begin of each key in an array that is sorted by key.
 /// @param sizes  entry k + 1: number of items with key k
-inline std::vector<Offset> starts_of(std::vector<Offset> sizes) {
+inline std::vector<Offset> begin_of_groups(std::vector<Offset> sizes) {
   for (std::size_t k = 1; k < sizes.size(); ++k) sizes[k] += sizes[k - 1];
   return sizes;
 }
@@ -48,7 +48,7 @@ Buckets buckets_of(Offset count, Index keys, unsigned threads, const Key& key) {
     for (Offset k = 0; k < count; ++k)
       if (const Offset i = key(k); from <= i && i < to) ++result.begin[i + 1];
   });
-  result.begin = starts_of(std::move(result.begin));
+  result.begin = begin_of_groups(std::move(result.begin));
   result.members.resize(static_cast<std::size_t>(count));
   std::vector<Offset> fill(result.begin.begin(), result.begin.end() - 1);
   for_key_ranges(keys, threads, [&](Offset from, Offset to) {

@@ -25,16 +25,17 @@ inline double nth_value(std::span<double> values, std::size_t at) {
 
 /// As `nth_value`, on several threads. For many values, two quantiles of a sample exclude most values as too small or too large.
 inline double value_at(std::span<double> values, std::size_t at, unsigned threads = 1) {
-  constexpr std::size_t few = 1 << 15, looked_at = 1 << 10, around = looked_at / 16;
+  constexpr std::size_t max_unsampled = 1 << 15, sample_size = 1 << 10, around = sample_size / 16;
   constexpr Offset chunk = 1 << 16;
-  if (values.size() <= few) return nth_value(values, at);
-  std::array<double, looked_at> sample;
-  for (std::size_t k = 0; k < looked_at; ++k) sample[k] = values[k * (values.size() / looked_at)];
+  if (values.size() <= max_unsampled) return nth_value(values, at);
+  std::array<double, sample_size> sample;
+  for (std::size_t k = 0; k < sample_size; ++k) sample[k] = values[k * (values.size() / sample_size)];
   std::sort(sample.begin(), sample.end());
-  const auto near = static_cast<std::size_t>(static_cast<double>(at) / static_cast<double>(values.size()) * looked_at);
+  const auto near =
+      static_cast<std::size_t>(static_cast<double>(at) / static_cast<double>(values.size()) * sample_size);
   constexpr double infinity = std::numeric_limits<double>::infinity();
   const double low = near < around ? -infinity : sample[near - around];
-  const double high = near + around < looked_at ? sample[near + around] : infinity;
+  const double high = near + around < sample_size ? sample[near + around] : infinity;
 
   const auto n = static_cast<Offset>(values.size());
   std::vector<std::vector<double>> between(static_cast<std::size_t>((n + chunk - 1) / chunk));

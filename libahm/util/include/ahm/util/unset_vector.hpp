@@ -13,15 +13,15 @@ namespace ahm::detail {
 /// An allocator that default-initializes new elements, which leaves numbers unset. The system clears a page of memory on its first
 /// write, so the threads that fill a large array share this cost.
 template <class T>
-struct LeaveUnset : std::allocator<T> {
+struct DefaultInitAllocator : std::allocator<T> {
   static_assert(std::is_trivially_destructible_v<T>);
   template <class U>
   struct rebind {  // NOLINT(readability-identifier-naming): the name in the standard
-    using other = LeaveUnset<U>;
+    using other = DefaultInitAllocator<U>;
   };
-  LeaveUnset() = default;
+  DefaultInitAllocator() = default;
   template <class U>
-  explicit(false) LeaveUnset(const LeaveUnset<U>& /*other*/) noexcept {}
+  explicit(false) DefaultInitAllocator(const DefaultInitAllocator<U>& /*other*/) noexcept {}
   template <class U>
   void construct(U* place) noexcept {
     ::new (static_cast<void*>(place)) U;
@@ -34,6 +34,6 @@ struct LeaveUnset : std::allocator<T> {
 
 /// A vector whose constructor `UnsetVector<T>(n)` and `resize(n)` do not initialize elements.
 template <class T>
-using UnsetVector = std::vector<T, LeaveUnset<T>>;
+using UnsetVector = std::vector<T, DefaultInitAllocator<T>>;
 
 }  // namespace ahm::detail

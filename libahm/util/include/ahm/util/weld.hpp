@@ -18,13 +18,13 @@
 namespace ahm::detail {
 
 /// Merged points, numbered in the order of their first input points.
-struct Welded {
+struct MergedPoints {
   std::vector<Index> number;  ///< merged point of each input point
   std::vector<Index> first;   ///< first input point of each merged point, ascending
 };
 
 /// Merges points with exactly equal positions. Points with a NaN coordinate are never merged.
-inline Welded weld(std::span<const Vec3> points) {
+inline MergedPoints weld(std::span<const Vec3> points) {
   std::vector<Index> order(points.size());
   std::iota(order.begin(), order.end(), 0);
   // Points with NaN go last: they have no place in a strict weak order.
@@ -36,12 +36,12 @@ inline Welded weld(std::span<const Vec3> points) {
   std::vector<Index> first(points.size());
   for (std::size_t k = 0; k < order.size(); ++k)
     first[order[k]] = k > 0 && points[order[k]] == points[order[k - 1]] ? first[order[k - 1]] : order[k];
-  Welded result;
+  MergedPoints result;
   result.number.resize(points.size());
   for (std::size_t p = 0; p < points.size(); ++p) {
-    const bool new_one = first[p] == static_cast<Index>(p);
-    result.number[p] = new_one ? static_cast<Index>(result.first.size()) : result.number[first[p]];
-    if (new_one) result.first.push_back(static_cast<Index>(p));
+    const bool is_first = first[p] == static_cast<Index>(p);
+    result.number[p] = is_first ? static_cast<Index>(result.first.size()) : result.number[first[p]];
+    if (is_first) result.first.push_back(static_cast<Index>(p));
   }
   return result;
 }
@@ -57,8 +57,8 @@ struct CellHash {
 /// Merges each point into the nearest earlier merged point within `reach` > 0, or else makes it a new merged point. Ties go to the
 /// first one. Distances are measured to the first input point of a merged point, so chains of close points do not collapse into one.
 /// Points that are not finite are never merged.
-inline Welded weld(std::span<const Vec3> points, double reach) {
-  Welded result;
+inline MergedPoints weld(std::span<const Vec3> points, double reach) {
+  MergedPoints result;
   std::unordered_map<Vec3, Index, CellHash> last_in;  // last merged point in each cell of width `reach`
   std::vector<Index> before;                          // previous merged point in the same cell; -1: none
   const auto cell_of = [&](const Vec3& p, const Vec3& step) {

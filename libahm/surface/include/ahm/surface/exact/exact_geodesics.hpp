@@ -124,24 +124,24 @@ class ExactGeodesics {
   /// Axes of a source in the tangent plane of `exact::ExactMap::direction`: u is (a[0], a[2]), v is (a[1], a[3]).
   using Axes = std::array<double, 4>;
   /// Sources in the form of the heat method, with their points and axes on the triangles.
-  struct Placed {
+  struct PlacedSources {
     std::vector<exact::MeshPoint> points;
     std::vector<Axes> axes;
     std::vector<Source> sources;
     std::vector<Vec2> positions;
   };
-  static Placed at_vertex(const FlatTriangles& flat, Vertex source);
-  exact::ExactMap exact_map(const Placed& from, const ExactMapOptions& options) const;
-  LabelledLogMap log_map(const Placed& from, Source source, const ExactMapOptions& options) const;
-  std::vector<Wavefront::Seed> seeds(const Placed& from, const ExactMapOptions& options) const;
-  Placed placed(std::span<const ExactSource> sources) const;
-  static Source joined(std::span<const ExactSource> given, const Placed& placed);
+  static PlacedSources at_vertex(const FlatTriangles& flat, Vertex source);
+  exact::ExactMap exact_map(const PlacedSources& from, const ExactMapOptions& options) const;
+  LabelledLogMap log_map(const PlacedSources& from, Source source, const ExactMapOptions& options) const;
+  std::vector<Wavefront::Seed> seeds(const PlacedSources& from, const ExactMapOptions& options) const;
+  PlacedSources placed(std::span<const ExactSource> sources) const;
+  static Source joined(std::span<const ExactSource> given, const PlacedSources& placed);
   std::vector<double> jumps(std::span<const double> coordinates, std::span<const Index> labels, bool of_curve) const;
   Axes axes(const SurfacePoint& at, const SurfaceSource& placed, const exact::MeshPoint& point) const;
   Axes vertex_axes(const SurfaceSource& placed) const;
   exact::TracedPath trace_to(const SurfaceSource& placed) const;
-  double u_beyond_row(const SurfaceSource& placed) const;
-  double u_in_face(const SurfacePoint& at, const SurfaceSource& placed, Index face) const;
+  double u_angle_beyond_row(const SurfaceSource& placed) const;
+  double u_angle_in_face(const SurfacePoint& at, const SurfaceSource& placed, Index face) const;
   Axes at_corner(exact::Half corner, double u) const;
 
   const Surface* surface_;
