@@ -156,7 +156,7 @@ def show(driver, address, process, shot):
     for name, request in REQUESTS.items():
         before = cpu_seconds(process)
         seconds, status_text = driver.execute_async_script(ASK % request)
-        print(f"{name}: {seconds:.2f} s (the program: {cpu_seconds(process) - before:.2f} s of processor time){'  ' + said if said and 'ms' not in said else ''}", flush=True)
+        print(f"{name}: {seconds:.2f} s (the program: {cpu_seconds(process) - before:.2f} s of processor time){'  ' + status_text if status_text and 'ms' not in status_text else ''}", flush=True)
     middle, slow, rest, share = driver.execute_async_script(TURN)
     print(f"a picture while it turns: {middle:.0f} ms, 95 of 100 below {slow:.0f} ms, of 1/{1 / share:.0f} of the "
           f"{'pixels' if driver.execute_script('return ahm.stage.surface.is_mesh') else 'points'}; at rest {rest:.0f} ms", flush=True)

@@ -31,7 +31,7 @@ def main():
 
     uv = map_of_egg.uv[map_of_egg.ok]
     error = np.abs(values - np.cos(12 * uv[:, 0]) * np.cos(12 * uv[:, 1]))[found.valid]
-    print(f"{np.isfinite(painted).sum()} of {len(egg)} rows painted, {taker}")
+    print(f"{np.isfinite(painted).sum()} of {len(egg)} rows painted, {map_of_egg}")
     print(f"interpolation error of the texture: mean {error.mean():.4f}, largest {error.max():.4f}")
     assert found.valid.mean() > 0.95 and error.mean() < 0.2
 

@@ -308,7 +308,7 @@ def test_maps_that_cannot_fit_are_refused_at_once():
             print(error)
     """)
     assert "40000 x 40000" in result.stdout, (result.stdout, result.stderr)
-    assert "maps on 1600000000 vertices take about" in result.stdout and "GB" in result.stdout, (result.stdout, result.stderr)
+    assert "maps on 1600000000 vertices need about" in result.stdout and "GB" in result.stdout, (result.stdout, result.stderr)
 
 
 def test_graphs_keep_their_frames_to_themselves(flat_surfaces):

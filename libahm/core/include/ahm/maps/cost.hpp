@@ -1,12 +1,12 @@
 /// \file
-/// What maps will cost, and which strategy suits, before anything is computed.
+/// Estimates time and memory of log maps, and chooses the strategy, before anything is computed.
 ///
 /// \code
 /// ahm::GraphSize size{.vertices = 10'000'000};
 /// ahm::Strategy strategy = ahm::choose_strategy(size, {.expected_maps = 1});
 /// ahm::Cost cost = ahm::estimate_cost(size, strategy);
 /// std::cout << cost.bytes / 1e9 << " GB, " << cost.first_map_seconds << " s\n";
-/// cost = ahm::estimate_cost(graph, ahm::Source::at_vertex(ahm::Vertex{42}), strategy);   // nearer, once there is a graph
+/// cost = ahm::estimate_cost(graph, ahm::Source::at_vertex(ahm::Vertex{42}), strategy);   // more accurate, needs the graph
 /// \endcode
 #pragma once
 
@@ -22,38 +22,40 @@ struct GraphSize {
   TransportKind kind = TransportKind::rotation2;
 };
 
-/// Bytes at the peak besides the graph itself, and seconds of processor time, on a machine of 3 GHz with an optimized BLAS.
+/// Peak memory without the graph itself, and processor time on a machine of 3 GHz with an optimized BLAS.
 struct Cost {
   double bytes = 0;
-  double first_map_seconds = 0;  ///< factorization included
-  double next_map_seconds = 0;   ///< for each further source
+  double first_map_seconds = 0;  ///< including the factorization
+  double next_map_seconds = 0;   ///< for each additional source
 };
 
-/// From the size alone: of surfaces that are sampled evenly and as wide as long (good to a third, docs/results/estimates.md) and of regular
-/// volumes (to a factor of two). Scans whose density varies may take twice that by march, long tubes half.
+/// Estimates the cost from the size only. The estimate is within a third for surfaces that are sampled evenly and about as wide as long
+/// (docs/results/estimates.md), and within a factor of two for regular volumes. By march, scans of varying density may take twice as much,
+/// long tubes half.
 /// @param strategy  global or march
-/// @param threads   a march on two and more holds two bands; 0: one per core
+/// @param threads   0: one per core. With two or more threads a march stores two bands
 /// @throws InvalidArgument (automatic)
 Cost estimate_cost(const GraphSize& size, Strategy strategy, unsigned threads = 0);
 
-/// From the graph: by the symbolic analysis of what is factored, which is the graph or the bands of a march; these are cut by
-/// the lengths of the shortest edge paths from the source. Good to a third on surfaces (docs/results/estimates.md), in a tenth of a map's time.
+/// Estimates the cost from the graph, by a symbolic analysis of the matrices: those of the graph, or of the bands of a march, whose
+/// extent is computed from shortest edge paths. The estimate is within a third on surfaces (docs/results/estimates.md). It takes a tenth
+/// of the time of a map.
 ///
-/// What a march within a radius takes where distances are not unfolded (clouds) cannot be known before: it goes on wherever vectors
-/// of heat are shorter than the radius, and in noise they are too short. This tells what it takes where they are not; it takes at
-/// most what it takes without a radius.
+/// On clouds, where distances are not unfolded, the cost of a march within a radius is uncertain. The march continues while the vectors
+/// computed by heat are shorter than the radius, and noise makes them too short. The estimate assumes vectors of the right length. The
+/// march never costs more than without a radius.
 /// @param options  t_coef, accuracy, ordering, kind of factorization
-/// @param radius   of a march, world units; > 0
+/// @param radius   radius of a march, world units; > 0
 /// @throws InvalidArgument (automatic; d is not 2; a source that does not fit the graph; radius, t_coef, accuracy)
 Cost estimate_cost(const TangentGraph& graph, const Source& source, Strategy strategy, const HeatOptions& options = {},
                    double radius = std::numeric_limits<double>::infinity());
 
-/// The strategy itself, or for `automatic`: `march` for a single map of a large graph, and wherever the factors would
-/// need more than the allowed memory; else `global`.
+/// The strategy of the options. `automatic` becomes `march` for a single map of a large graph, or if the factors would need more than
+/// the allowed memory; else `global`.
 Strategy choose_strategy(const GraphSize& size, const HeatOptions& options);
 
-/// Bytes of memory this process may take: what the machine has, or less where its control groups (containers) or its
-/// resource limits (`ulimit`) allow less; 0 when the system does not say.
+/// Bytes of memory that this process may use: the memory of the machine, or the limit of its control groups (containers) or resource
+/// limits (`ulimit`) if that is smaller. 0 if the system does not report it.
 double machine_memory();
 
 }  // namespace ahm

@@ -1,5 +1,5 @@
 /// \file
-/// The result of a solve: coordinates and a status for every vertex.
+/// A logarithmic map: coordinates and a status for every vertex.
 ///
 /// \code
 /// ahm::LogMap map = solver.solve(ahm::Source::at_vertex(ahm::Vertex{0}));
@@ -19,21 +19,21 @@
 
 namespace ahm {
 
-/// What a march did.
+/// Work of a march.
 struct MarchStatistics {
-  Index bands = 0;         ///< factorizations
-  Index largest_band = 0;  ///< vertices
-  Offset solved = 0;       ///< vertices of all bands
+  Index bands = 0;         ///< number of bands; each has its own factorization
+  Index largest_band = 0;  ///< number of vertices of the largest band
+  Offset solved = 0;       ///< sum of the numbers of vertices of all bands
 };
 
-/// How a map was made.
+/// The method that computed a map.
 enum class Method {
-  heat,   ///< by diffusion (`LogMapSolver`)
+  heat,   ///< diffusion (`LogMapSolver`)
   polar,  ///< geodesic polar coordinates of a front (`PolarMapSolver`, `polar_map`)
-  exact,  ///< by straight lines over the flat triangles of a mesh (`ExactGeodesics`)
+  exact,  ///< exact geodesics of the flat triangles of a mesh (`ExactGeodesics`)
 };
 
-/// What a map may hold besides coordinates.
+/// Optional data of a map; `LogMap` has an accessor of the same name for each.
 struct MapExtras {
   MarchStatistics march;
   std::vector<double> distances;
@@ -47,15 +47,15 @@ struct MapExtras {
   double radius = std::numeric_limits<double>::infinity();
 };
 
-/// Why a vertex has coordinates, or has none.
+/// Whether a vertex has coordinates, and if not why.
 enum class Status : std::uint8_t {
   ok,
   disconnected,   ///< in a component of the graph without a source
   beyond_radius,  ///< farther from the source than the requested radius
-  /// Strategy::global: so far (about 700 edges at t_coef = 1) that the heat has left the range of double precision. Any
+  /// Strategy::global: so far from the source (about 700 edges at t_coef = 1) that the heat is below the range of double precision. Any
   /// strategy: the heat cancels (negative weights).
   unreached,
-  removed,  ///< an input point that is no vertex of the graph (set by backends, never by the solver)
+  removed,  ///< an input point that is not a vertex of the graph (set by backends, never by the solver)
 };
 
 /// The word used in files: "ok", "disconnected", "beyond_radius", "unreached", "removed".
@@ -64,30 +64,29 @@ std::string_view to_string(Method method) noexcept;
 std::string_view to_string(Variant variant) noexcept;
 std::string_view to_string(Strategy strategy) noexcept;
 
-/// A logarithmic map: for every vertex i its coordinates phi_i in the source's frame, NaN exactly where the status is
-/// not `ok`.
+/// A logarithmic map: the coordinates phi_i of every vertex i in the source's frame. They are NaN exactly where the status is not `ok`.
 class LogMap {
  public:
-  /// Without distances in `extras` they are |phi_i|.
+  /// If `extras` has no distances, they are |phi_i|.
   LogMap(int dimension, Variant variant, Strategy strategy, Source source, std::vector<double> coordinates,
          std::vector<Status> status, MapExtras extras = {});
 
   Index size() const noexcept { return static_cast<Index>(status_.size()); }
   int dimension() const noexcept { return dimension_; }
-  /// Variant and strategy mean nothing of an exact map.
+  /// `variant` and `strategy` apply to maps by heat only.
   Method method() const noexcept { return extras_.method; }
   Variant variant() const noexcept { return variant_; }
-  /// How it was solved: `global`, or `march` where any part was marched.
+  /// The strategy of the solve: `global`, or `march` if any part was solved by a march.
   Strategy strategy() const noexcept { return strategy_; }
-  /// Zero for a global solve.
+  /// Work of the march; zero for a global solve.
   const MarchStatistics& march() const noexcept { return extras_.march; }
-  /// With MapOptions::frames: the source's axes carried to every vertex (Eq. 11 and 12), n x d x d, row major: column a is
+  /// With MapOptions::frames: the source's axes, parallel transported to every vertex (Eq. 11 and 12), n x d x d, row major. Column a is
   /// source axis a in the frame of the vertex. Identity where no heat arrived.
   std::span<const double> frames() const noexcept { return extras_.frames; }
-  /// An estimate of |error of phi_i| of a polar map in world units; NaN where not ok (docs/concepts/accuracy.md): the distance
-  /// times the expected error of the direction (`Wavefront::direction_error`). Empty for heat and exact maps.
+  /// Polar maps: estimated |error of phi_i|, world units; NaN where not ok. It is the distance times the expected error of the direction
+  /// (`Wavefront::direction_error`, docs/concepts/accuracy.md). Empty for heat and exact maps.
   std::span<const double> error_estimate() const noexcept { return extras_.error_estimate; }
-  /// That was asked for, world units; infinite: none.
+  /// The requested radius, world units; infinite: none.
   double radius() const noexcept { return extras_.radius; }
   /// The source whose frame the coordinates refer to.
   const Source& source() const noexcept { return source_; }
@@ -96,31 +95,36 @@ class LogMap {
   std::span<const double> coordinates() const noexcept { return coordinates_; }
   /// phi_i, d numbers.
   std::span<const double> coordinates(Vertex vertex) const;
-  /// Where a point lies that is given as a source: linear between its vertices and, where their weighted offsets leave
-  /// something (a point beside its only vertex), moved on by that along `frames`. NaN where a vertex of it is not ok.
-  /// @throws InvalidArgument (a curve; offsets that leave something, and no frames)
+  /// Coordinates of a point that is described by a source. The map is interpolated linearly between the vertices of the point. If the
+  /// weighted mean of their offsets is not zero (a point near its only vertex), the remaining displacement is added, transported by
+  /// `frames`. NaN if a vertex of the point is not ok.
+  /// @throws InvalidArgument (a curve; a map without frames if the mean offset is not zero)
   std::vector<double> coordinates(const Source& point) const;
   std::span<const Status> status() const noexcept { return status_; }
   Status status(Vertex vertex) const { return status_[vertex.index]; }
-  /// The geodesic distance from the source, world units; NaN where not ok. It is not |phi_i|, which is too short wherever
-  /// several paths reach a vertex: on triangulations it is unfolded (`Wavefront`), elsewhere sqrt(q_i / lambda_i), the
-  /// root mean square of what heat brings (docs/concepts/accuracy.md). Both are |phi_i| on flat graphs. From a curve: to its nearest
-  /// sample. Of an exact map it is |phi_i|.
+  /// Geodesic distance from the source, world units; NaN where not ok. For a curve it is the distance to the nearest sample.
+  ///
+  /// Maps by heat: |phi_i| is too short wherever several paths reach a vertex, so the distance is computed separately
+  /// (docs/concepts/accuracy.md). On triangulations and from curves it is unfolded (`Wavefront`). Elsewhere it is sqrt(q_i / lambda_i), the
+  /// root mean square over the paths of the heat. Both are equal to |phi_i| on flat graphs. Exact maps: the distance is |phi_i|.
   double distance(Vertex vertex) const { return extras_.distances[vertex.index]; }
   std::span<const double> distances() const noexcept { return extras_.distances; }
-  /// sqrt(q_i / lambda_i - |phi_i|^2), the standard deviation of the coordinates over the ways by which heat arrives, world
-  /// units: 0 on flat graphs, small inside the cut locus, about the distance on it. NaN where not ok; of polar and exact maps half
-  /// of the longest jump to a neighbor, beyond the length of the side; empty without MapOptions::spread. From a curve it is over its
-  /// points, too: 0 on flat graphs beside a straight one, about the distance where a bent one's normals meet.
+  /// Uncertainty of the coordinates, world units; NaN where not ok. Empty without MapOptions::spread.
+  ///
+  /// Maps by heat: sqrt(q_i / lambda_i - |phi_i|^2), the standard deviation of the coordinates over the paths of the heat. It is 0 on
+  /// flat graphs, small inside the cut locus and about the distance on it. For a curve it includes the deviation over the points of the
+  /// curve: on flat graphs it is 0 near a straight curve, and about the distance where the normals of a bent curve meet.
+  ///
+  /// Polar and exact maps: half of the largest excess of a neighbor's distance in the map over the edge length.
   std::span<const double> spread() const noexcept { return extras_.spread; }
-  /// Where distances are unfolded, the unit vectors in which the ways to the vertices leave the source (`Wavefront`), n x 2 in
-  /// its frame: beside phi, which `map_quality` compares with them; from a curve, of the ways from its nearest sample. NaN at the
-  /// source itself. Empty elsewhere and without MapOptions::spread.
+  /// Unit vectors in which the geodesic paths leave the source (`Wavefront`), n x 2, in the source's frame; for a curve, the paths from the
+  /// nearest sample. NaN at the source. `map_quality` compares phi with them. Only maps by heat on Delaunay triangulations have them, with
+  /// MapOptions::spread; otherwise empty.
   std::span<const double> directions() const noexcept { return extras_.directions; }
-  /// The expected errors of these directions, radians (`Wavefront::direction_error`); empty where there are none.
+  /// Expected errors of `directions`, radians (`Wavefront::direction_error`); empty if `directions` is.
   std::span<const double> direction_errors() const noexcept { return extras_.direction_errors; }
-  /// From a curve, the number of the sample nearest to each vertex (`Source::Place::point`), -1 where none is; empty of other
-  /// sources.
+  /// Number of the source point nearest to each vertex (`Source::Place::point`), -1: none. Maps from a curve and polar maps from several
+  /// points have it; otherwise empty.
   std::span<const Index> nearest() const noexcept { return extras_.nearest; }
   /// Number of vertices with this status.
   Index count(Status status) const noexcept;

@@ -5,7 +5,7 @@
 /// ahm::LogMapSolver solver(graph);                                  // factors once
 /// ahm::LogMap map = solver.solve(ahm::Source::at_vertex(ahm::Vertex{42}));      // then each map costs a few triangular solves
 ///
-/// ahm::LogMapSolver once(huge_graph, {.expected_maps = 1});    // nothing is factored: one map by marching
+/// ahm::LogMapSolver once(huge_graph, {.expected_maps = 1});    // factors nothing: solves a single map by a march
 /// \endcode
 #pragma once
 
@@ -21,24 +21,24 @@
 
 namespace ahm {
 
-/// What may differ from map to map; what is not given is the solver's.
+/// Options of one map. The solver's options apply where these have no value.
 struct MapOptions {
   std::optional<Variant> variant = {};
   /// Vertices farther than this from the source get `Status::beyond_radius`, and a march ends there. World units; > 0.
   double radius = std::numeric_limits<double>::infinity();
   std::optional<unsigned> threads = {};
   bool frames = false;  ///< keep the transported frames
-  bool spread = true;   ///< find and keep `LogMap::spread`; where distances are unfolded it is a fifth of the work
-  /// Find `LogMap::distance`. Without, a map is coordinates alone, from factors in about half the time: its distance is |phi|, and it
-  /// has no spread (and so no quality).
+  bool spread = true;   ///< compute `LogMap::spread`; a fifth of the work if distances are unfolded
+  /// Compute `LogMap::distance`. Without it a map takes about half of the time after the factorization. Its distance is then |phi|, and it
+  /// has no spread and so no quality.
   bool distances = true;
   std::optional<Progress> progress = {};
 };
 
-/// Solves for log maps on one graph. Immutable: `solve` is const and may be called from many threads at once.
+/// Computes log maps on one graph. Immutable: `solve` is const and may be called from many threads at once.
 class LogMapSolver {
  public:
-  /// Chooses the strategy, and for a global one factors the graph's two operators.
+  /// Chooses the strategy. For `global` it also factors the graph's two operators.
   /// @param graph  must outlive the solver
   /// @throws as `HeatOperators`; InvalidArgument (accuracy, expected_maps)
   explicit LogMapSolver(const TangentGraph& graph, const HeatOptions& options = {});
@@ -47,24 +47,24 @@ class LogMapSolver {
   LogMapSolver(LogMapSolver&&) noexcept;
   LogMapSolver& operator=(LogMapSolver&&) noexcept;
 
-  /// The log map of one source (Alg. 1 or Alg. 2 with the homogeneous coordinate eliminated, docs/concepts/method.md).
+  /// The log map of one source: Algorithm 1 or 2 with the homogeneous coordinate eliminated (docs/concepts/method.md).
   ///
-  /// Where a global solve leaves vertices beyond its reach, strategy `automatic` marches on from what it has reached.
+  /// If a global solve does not reach all vertices, strategy `automatic` continues by a march.
   /// @throws InvalidArgument when the source does not fit the graph (index, dimension, a reflection on a `rotation2`
-  /// graph) or an option is out of range; NotPositiveDefinite (of a band), ResourceExhausted, Cancelled
+  ///         graph) or an option is out of range; NotPositiveDefinite (of a band), ResourceExhausted, Cancelled
   LogMap solve(const Source& source, const MapOptions& options = {}) const;
 
-  /// Many sources. Global: as blocks of right-hand sides, the same numbers in the same order as one block at a time on
-  /// one thread. Marched: one after the other on each thread.
-  /// @throws as for one; ResourceExhausted where the maps alone would fill the memory, before any is made
+  /// The log maps of many sources, in their order. The strategy `global` solves blocks of right-hand sides; the numbers do not depend on
+  /// the number of threads. The strategy `march` solves one map at a time on each thread.
+  /// @throws as for one source; ResourceExhausted before any map is computed, if the maps would exceed the memory
   std::vector<LogMap> solve(std::span<const Source> sources, const MapOptions& options = {}) const;
 
   const TangentGraph& graph() const noexcept;
   const HeatOptions& options() const noexcept;
-  /// What was chosen: `global` or `march`.
+  /// The chosen strategy: `global` or `march`.
   Strategy strategy() const noexcept;
   /// The factored operators of the whole graph. Under strategy `march` the first call factors them.
-  /// @throws as `HeatOperators`; ResourceExhausted where a marching solver's would not fit into memory
+  /// @throws as `HeatOperators`; ResourceExhausted if the strategy is `march` and the factors would not fit into memory
   const HeatOperators& operators() const;
 
  private:

@@ -1,5 +1,5 @@
 /// \file
-/// A log map in geodesic polar coordinates, from a front on any graph of dimension 2 [MR12].
+/// Log maps in geodesic polar coordinates, computed by a front on any graph of dimension 2 [MR12].
 ///
 /// \code
 /// ahm::Wavefront front(graph, nullptr, true);               // with directions
@@ -25,9 +25,10 @@ struct PolarMapOptions {
   Progress progress = {};
 };
 
-/// The polar coordinates that a front has found: phi_i = distance times direction, `LogMap::method` is polar. Its spread is half
-/// of what the longest edge of a vertex has too much in the map: large at the cut locus, as of exact maps.
-/// @param source  the only one of the front; no curve. Of several points the nearest counts (`LogMap::nearest`)
+/// Converts the result of a front to a log map: phi_i = distance times direction, `LogMap::method` is polar. The spread of a vertex is
+/// half of the largest excess of an edge's length in the map over its length. It is large at the cut locus, as for exact maps.
+/// @param source  the only source of the front; not a curve. If it has several points, the nearest one defines the coordinates
+///                (`LogMap::nearest`)
 /// @throws InvalidArgument (a front without directions, a curve, radius)
 LogMap polar_map(const Wavefront& front, const Source& source, const PolarMapOptions& options = {});
 

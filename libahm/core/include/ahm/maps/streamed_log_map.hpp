@@ -1,5 +1,5 @@
 /// \file
-/// One log map of a graph that need not fit into memory: by march, handed over vertex after vertex as the front passes.
+/// One log map of a graph that need not fit into memory. A march computes it and passes each vertex to a sink.
 ///
 /// \code
 /// struct Rows final : ahm::MapSink {
@@ -16,10 +16,10 @@
 
 namespace ahm {
 
-/// What a map says of a vertex; numbers are NaN where the status is not `ok`. Lengths in world units.
+/// The result at one vertex. Numbers are NaN where the status is not `ok`. Lengths in world units.
 struct MapRow {
   Status status;                        ///< ok, beyond_radius or unreached
-  std::span<const double> coordinates;  ///< phi, d numbers in the source's frame; none of `stream_distances`
+  std::span<const double> coordinates;  ///< phi, d numbers in the source's frame; empty for `stream_distances`
   double distance;                      ///< as `LogMap::distance`
   double spread;                        ///< as `LogMap::spread`
 };
@@ -35,28 +35,29 @@ struct StreamOptions {
   Progress progress = {};
 };
 
+/// Receives the rows of a streamed map.
 class MapSink {
  public:
   virtual ~MapSink() = default;
-  /// Called once for each vertex that the march comes to, from one thread, in the order of the march. `row` lives as long as the call.
+  /// Called once for each vertex that the march reaches, from one thread, in the order of the march. `row` is valid during the call.
   virtual void put(Index vertex, const MapRow& row) = 0;
 };
 
-/// The map that a marching `LogMapSolver` makes of the same graph and source, to the bit. Vertices that `sink` is not told
-/// of are beyond the radius, without heat, or in a component without the source.
+/// Computes the map of a `LogMapSolver` with strategy `march`, with the same bits. Vertices for which `sink` gets no row are beyond the
+/// radius, have no heat, or are in a component without a source.
 ///
-/// Memory is in proportion to the march's front (about 300 bytes per vertex of a band, besides its factors) and 10 bytes per
-/// 256 vertices of the graph; the graph is asked for stars along the front alone, from one thread. Where it `is_delaunay`, distances
-/// are unfolded first, by a front that keeps 30 bytes per vertex of the graph.
-/// @param graph    tells `component_edge_length` of every vertex. It is not validated
+/// Memory is proportional to the front of the march: about 300 bytes per vertex of a band, plus the factors of the band. In addition there
+/// are 10 bytes per 256 vertices of the graph. The march requests stars near its front only, from one thread. If the graph `is_delaunay`,
+/// distances are first unfolded by a wavefront, which stores 30 bytes per vertex of the graph.
+/// @param graph    must provide `component_edge_length` for every vertex. It is not validated
 /// @param source   points, not a curve
-/// @throws InvalidArgument (source, options, a graph of another kind), InvalidGraph (an edge that only one end knows),
-/// NotPositiveDefinite (of a band), Cancelled, and what graph and sink throw
+/// @throws InvalidArgument (source, options, a graph of another kind), InvalidGraph (an edge without its reverse edge),
+///         NotPositiveDefinite (of a band), Cancelled, and exceptions of graph and sink
 MarchStatistics stream_log_map(const TangentGraph& graph, const Source& source, const StreamOptions& options,
                                MapSink& sink);
 
-/// The distances of the localized map alone, to the bit, whatever variant the options name; its spread to rounding. No frames are
-/// solved for, which is one of the two solves with B in every band.
+/// Computes only the distances and the spread of the localized map. The options' variant is ignored. The distances have the same bits as in
+/// the map; the spread is equal up to rounding. No frames are computed, which saves one of the two solves with B in every band.
 /// @throws as `stream_log_map`
 MarchStatistics stream_distances(const TangentGraph& graph, const Source& source, const StreamOptions& options,
                                  MapSink& sink);
