@@ -23,7 +23,7 @@ def block(kind, name):
 
 def fields(name):
     """Fields of a struct with their defaults, as Python has them."""
-    found = re.findall(r"(\w+) = ([^;]*);", block("struct", name))
+    found = re.findall(r"(\w+)\s*=\s*([^;]*);", block("struct", name))
     return {field: CPP_VALUES[value.strip()] for field, value in found}
 
 

@@ -99,7 +99,7 @@ TEST_F(ManyMaps, NeverGoToOneFileNorToAnInput) {
   };
   std::filesystem::create_directory(folder / "other");
   folder.write("other/plane.xyz", xyz(plane(5)));
-  refused({plane_file, folder / "other/plane.xyz", "-s", "0", "-o", folder / "{}.csv"}, "different names");
+  refused({plane_file, folder / "other/plane.xyz", "-s", "0", "-o", folder / "{}.csv"}, "rename one");
   refused({plane_file, sphere_file, "-s", "0", "-o", folder / "map.csv"}, "one file for several maps");
   refused({plane_file, sphere_file, "-s", "0", "-o", "-"}, "one file for several maps");
   folder.write("sphere.csv", "x,y,z\n1,2,3\n");

@@ -183,7 +183,7 @@ TEST(PathCommand, SaysWhyThereIsNone) {
     EXPECT_NE(outcome.err.find(word), std::string::npos) << outcome.err;
     EXPECT_FALSE(std::filesystem::exists(folder / "path.csv"));
   };
-  refused(input, "9", "does not connect");
+  refused(input, "9", "there is no path");
   refused(input, "12", "--to 12");
 }
 
@@ -204,7 +204,7 @@ TEST(PathCommand, IsStraightOverAFlatCloud) {
     const Outcome refused =
         run({"path", input, "--from", "0", "--to", "5 90", "--closed", option, "-o", folder / "no.csv"});
     EXPECT_EQ(refused.status, 1);
-    EXPECT_NE(refused.err.find("takes faces"), std::string::npos) << refused.err;
+    EXPECT_NE(refused.err.find("requires faces"), std::string::npos) << refused.err;
   }
 }
 

@@ -51,9 +51,9 @@ TEST(TileFaults, ATileCutShortOrMissingIsNamed) {
   cloud.build();
   const auto path = Manifest::file(cloud.tiles, "graph", 1);
   std::filesystem::resize_file(path, std::filesystem::file_size(path) - 64);
-  expect_error<IoError>([&] { go_through(cloud.tiles); }, "cut short");
+  expect_error<IoError>([&] { go_through(cloud.tiles); }, "truncated");
   std::filesystem::resize_file(path, 10);
-  expect_error<IoError>([&] { go_through(cloud.tiles); }, "cut short");
+  expect_error<IoError>([&] { go_through(cloud.tiles); }, "truncated");
   std::filesystem::remove(path);
   expect_error<IoError>([&] { go_through(cloud.tiles); }, path.string());
   expect_error<IoError>([&] { cloud.build(); }, "tile 1 in");  // what it was made from is gone
@@ -96,7 +96,7 @@ TEST(TileFaults, StepsGoInAnyOrderOfTilesAndAreDoneOnce) {
   expected.build();
   expect_error<InvalidArgument>([&] { tiles::run_step(cloud.tiles, "planes", 0); }, "planned");
   expect_error<InvalidArgument>([&] { tiles::run_step(cloud.tiles, "index", {}); }, "run it for tile 0 first");
-  expect_error<InvalidArgument>([&] { tiles::run_step(cloud.tiles, "sort", {}); }, "of a tile");
+  expect_error<InvalidArgument>([&] { tiles::run_step(cloud.tiles, "sort", {}); }, "one tile");
   expect_error<InvalidArgument>([&] { tiles::run_step(cloud.tiles, "sort", 99); }, "tile 99");
   expect_error<InvalidArgument>([&] { tiles::run_step(cloud.tiles, "sorting", 0); }, "not one of sort, index");
   const std::size_t tiles = Manifest::read(cloud.tiles).tiles.size();

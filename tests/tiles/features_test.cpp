@@ -296,7 +296,7 @@ TEST(LocalFeatures, ThatAreNoneAreRefused) {
   write_column(directory / "short.npy", std::vector<double>(899));
   expect_error<InvalidArgument>([&] { mean("short.npy"); }, "899 value(s); the input of the tiles has 900 rows");
   write_npy(directory / "cut.npy", "<f8", "(900,)", bytes_of(std::vector<double>(899)));
-  expect_error<IoError>([&] { mean("cut.npy"); }, "cut short");
+  expect_error<IoError>([&] { mean("cut.npy"); }, "truncated");
   write_npy(directory / "single.npy", "<f4", "(900,)", bytes_of(std::vector<double>(450)));
   expect_error<IoError>([&] { mean("single.npy"); }, "not float64");
   write_npy(directory / "table.npy", "<f8", "(450, 2)", bytes_of(std::vector<double>(900)));

@@ -9,6 +9,7 @@
 /// Nothing is traced along the surface, and no angles are summed around vertices. A point near a diagonal may end on either
 /// side of it, but always at the correct position. The error of one step is a rounding error relative to the size of the
 /// quadrilateral, also for needles and caps.
+/// The intrinsic triangulation is flipped to the intrinsic Delaunay triangulation [BS07, SGC21].
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 /// \file
-/// Multifrontal factorization: each supernode is eliminated in a dense matrix, its front.
+/// Multifrontal factorization [DR83]: each supernode is eliminated in a dense matrix, its front.
 #pragma once
 
 #include "ahm/types.hpp"

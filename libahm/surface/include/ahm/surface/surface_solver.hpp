@@ -107,11 +107,13 @@ class SurfaceSolver {
   explicit SurfaceSolver(const Surface& surface, const MethodOptions& options = {});
   /// Shares the surface.
   explicit SurfaceSolver(std::shared_ptr<const Surface> surface, const MethodOptions& options = {});
+  // NOLINTBEGIN(bugprone-forwarding-reference-overload,bugprone-move-forwarding-reference): rvalues only
   /// Keeps a surface that has no other owner.
   template <class S>
   requires(std::derived_from<S, Surface> &&
            !std::is_const_v<S>) explicit SurfaceSolver(S&& surface, const MethodOptions& options = {})
       : SurfaceSolver(std::shared_ptr<const Surface>(std::make_shared<const S>(std::move(surface))), options) {}
+  // NOLINTEND(bugprone-forwarding-reference-overload,bugprone-move-forwarding-reference)
   ~SurfaceSolver();
   SurfaceSolver(SurfaceSolver&&) noexcept;
   SurfaceSolver& operator=(SurfaceSolver&&) noexcept;
