@@ -13,7 +13,7 @@ import tokenize
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 SUFFIXES = {".md", ".hpp", ".cpp", ".py", ".js"}
-LATER = ("tests/", "benchmarks/", "python/tests/", "apps/viewer/", "libahm/core/include/ahm/maps/", "libahm/core/src/maps/")  # not rewritten yet
+LATER = ("tests/", "benchmarks/", "python/tests/")  # not rewritten yet
 
 
 def rules():

@@ -144,8 +144,7 @@ TEST(Cells, AreTheSameByAFrontThatGoesOn) {
   for (std::size_t count : {1, 2, 7, 24}) {
     expect_fresh_cells(front, std::span(sources).first(count));
   }
-  expect_error<InvalidArgument>([&] { voronoi_cells(front, std::span(sources).first(5)); },
-                                "24 points, more than");
+  expect_error<InvalidArgument>([&] { voronoi_cells(front, std::span(sources).first(5)); }, "24 points, more than");
 }
 
 TEST(Cells, LeaveComponentsWithoutASourceUnlabelled) {

@@ -117,7 +117,7 @@ TEST(MemoryLimits, AreNotFilledByMapsThatAreKnownNotToFit) {
   const LogMapSolver solver(graph, {.strategy = Strategy::march});
   const std::vector<Source> sources(2000, Source::at_vertex(Vertex(0)));
   const Lowered lowered(RLIMIT_DATA, 1'000'000'000);
-  expect_error<ResourceExhausted>([&] { solver.solve(sources); }, "2000 maps of 20000 vertices fill the memory");
+  expect_error<ResourceExhausted>([&] { solver.solve(sources); }, "2000 maps of 20000 vertices do not fit into memory");
 }
 
 }  // namespace

@@ -47,10 +47,10 @@ TEST(SourceAdd, RefusesNonsense) {
       [&] {
         source.add(Vertex{4}, 1.0, std::array{3.0, 1.0}, identity, {0, 0.5, {3.0, 0.0}});
       },
-      "'offset' is 1 from the position of 'place', whose distance is 0.5");
+      "'offset' is 1 from the position of 'place', but its distance is 0.5");
   expect_error<InvalidArgument>([&] { Source::at_vertex(Vertex{1}, zero); }, "direction");
   expect_error<InvalidArgument>([&] { Source::at_vertex(Vertex{1}).add(Vertex{2}, 1.0, zero, identity); },
-                                "no further samples");
+                                "no more samples");
   expect_error<InvalidArgument>([&] { Source(0); }, "dimension 0");
   EXPECT_TRUE(source.vertices().empty());
 }

@@ -26,7 +26,7 @@ void check_source(const Source& source, const TangentGraph& graph) {
   for (std::size_t k = 0; k * 4 < source.axes().size(); ++k)
     if (const auto U = source.axes().subspan(k * 4, 4); U[0] * U[3] - U[1] * U[2] < 0)
       throw InvalidArgument("source axes at vertex " + std::to_string(source.vertices()[k].index) +
-                            " are a reflection; this graph's frames are all oriented alike, so give a rotation");
+                            " are a reflection; the frames of this graph have one orientation, so use a rotation");
 }
 
 double solution_unit(const TangentGraph& graph) {
@@ -132,8 +132,8 @@ void AffineHeat::diffuse() {
       threads_, [&] { diffuse_heat(); }, [&] { diffuse_frames(); });
 }
 
-/// rho_i = -tau sum_j w_ij e_ij lambda_j, columns of n vectors of d numbers. The translation from j to i is -e_ij: it
-/// adds the displacement j -> i, so that the plane comes out exact.
+/// rho_i = -tau sum_j w_ij e_ij lambda_j, columns of n vectors of d numbers. The translation from j to i adds the displacement from j to i,
+/// which is -e_ij in the frame of i. With this sign the map of a plane is exact.
 std::vector<double> AffineHeat::translations() const {
   std::vector<double> rho(rhs_.size() * n_ * d_, 0.0);
   const double to_units = graph_.length_unit() / solution_unit(graph_);
@@ -182,7 +182,7 @@ void AffineHeat::solve() {
   system_.solve(operators_, unknown_, rhs_.size(), threads_);
 }
 
-/// A^-1 (s + b |z|^2)
+/// q = A^-1 (s + b |z|^2), s_i = -tau sum_j w_ij (2 <e_ij, z_j> - |e_ij|^2 lambda_j)
 void AffineHeat::solve_squares() {
   const double to_units = graph_.length_unit() / solution_unit(graph_);
   squares_.resize(rhs_.size() * n_);
@@ -225,7 +225,7 @@ void AffineHeat::solve_squares() {
   operators_.solve_scalar(squares_, static_cast<Index>(rhs_.size()), threads_);
 }
 
-/// A^-1 (s(r) + b |z|^2)
+/// p = A^-1 (s + b |z|^2), with s as for q but z_j replaced by `radial_at` j, transported to the frame of i
 void AffineHeat::solve_lengths() {
   const double to_units = graph_.length_unit() / solution_unit(graph_);
   std::vector<double> radial(unknown_.size());
@@ -267,7 +267,7 @@ double AffineHeat::root_mean_square_at(std::size_t source, Index vertex) const {
   return std::sqrt(std::max(0.0, square_at(source, vertex) / lambda(source)[vertex])) * solution_unit(graph_);
 }
 
-/// The distance by this second moment, in units of the solution.
+/// The distance computed from a second moment (q or p), in units of the solution.
 double AffineHeat::distance_by(std::size_t source, Index vertex, double second_moment) const {
   const auto i = static_cast<std::size_t>(vertex);
   const double heat = lambda(source)[i];

@@ -25,13 +25,13 @@
 namespace ahm {
 namespace {
 
-/// How much longer ways along edges are than straight ones, where these do not run along edges.
+/// Typical ratio of the length of an edge path to the distance, in directions that do not follow edges.
 constexpr double detour = 1.1;
 
 constexpr double unreached = std::numeric_limits<double>::infinity();
 
-/// The least sum of a length along edges from the source; `unreached` where there is no way, or none up to `farthest`.
-/// @param length_of  of an edge, from its star's vertex
+/// Length of the shortest edge path from the source to each vertex; `unreached` if there is no path, or none up to `farthest`.
+/// @param length_of  length_of(vertex, star, edge): length of an edge
 template <class LengthOf>
 std::vector<double> ways_from(const Source& source, const TangentGraph& graph, double farthest,
                               const LengthOf& length_of) {
@@ -92,7 +92,7 @@ MarchWork march_work(const TangentGraph& graph, const Source& source, const Marc
                                             [&] { return heat_diagonal(graph, i, tau); }));
   };
   const std::vector<double> levels = ways_from(source, graph, std::numeric_limits<double>::max(), heat_way);
-  double last = 0, farthest = 0;  // where the march ends, and the graph
+  double last = 0, farthest = 0;  // heat distance of the end of the march, and of the farthest vertex
   for (double level : levels)
     if (level < unreached) farthest = std::max(farthest, level);
   if (std::isinf(radius)) {
@@ -122,7 +122,7 @@ MarchWork march_work(const TangentGraph& graph, const Source& source, const Marc
     work.solved += size;
     work.reached = ahead;
     if (size > work.largest.vertices) work.largest.vertices = size, largest_from = from;
-    if (from + depth >= farthest) break;  // all that is ahead was in it
+    if (from + depth >= farthest) break;  // this band contains all remaining vertices
   }
   std::vector<Index> band;
   for (std::size_t i = 0; i < levels.size(); ++i)
@@ -134,11 +134,11 @@ MarchWork march_work(const TangentGraph& graph, const Source& source, const Marc
 
 namespace {
 
-/// Graphs of at least this many vertices are marched when only one map is wanted (docs/results/march.md has the measurements).
+/// The number of vertices from which a single map is computed by a march (measurements: docs/results/march.md).
 constexpr Index march_from = 50'000, march_volumes_from = 10'000;
 
-/// Nested dissection theory with constants fitted: O(n log n) memory and O(n^1.5) time on surfaces, O(n^(4/3)) and O(n^2)
-/// in volumes.
+/// Cost of a global solve, by the theory of nested dissection with fitted constants: O(n log n) memory and O(n^1.5) time on surfaces,
+/// O(n^(4/3)) memory and O(n^2) time in volumes.
 Cost global(double n, int d, double numbers) {
   if (d > 2) return {140 * numbers * std::pow(n, 4.0 / 3.0), 3.4e-10 * numbers * n * n, 3e-7 * numbers * n};
   const double share = numbers / 3;  // 1 real and 1 complex number per entry
@@ -146,7 +146,7 @@ Cost global(double n, int d, double numbers) {
           share * 3e-8 * n * std::log2(n + 1)};
 }
 
-/// Linear, but for the band at hand, and on two threads and more the next one's heat.
+/// Cost of a march: linear in n, plus the memory of the current band and, with two or more threads, of the next band's heat.
 Cost march(double n, int d, double numbers, bool looks_ahead) {
   const double seconds = (d > 2 ? 1.5e-6 : 2e-6) * numbers * n;
   const double band = d > 2 ? 150 * numbers * std::min(n, 60 * std::pow(n, 2.0 / 3.0))
@@ -154,8 +154,8 @@ Cost march(double n, int d, double numbers, bool looks_ahead) {
   return {8 * (numbers + 4 * d + 5) * n + (d > 2 ? 0 : 180 * n) + band, seconds, seconds};
 }
 
-/// What follows from counts of one graph. Bytes are those of what is allocated; the rest of bytes is fitted to half of 32 real files
-/// and tried on the other half, seconds are fitted to all of them.
+/// Computes bytes and seconds from the counts of one graph. Bytes are computed from the allocations; the constants for the rest are fitted
+/// to half of 32 real files and validated on the other half. The constants for seconds are fitted to all files.
 class CostOf {
  public:
   explicit CostOf(const TangentGraph& graph)
@@ -165,33 +165,34 @@ class CostOf {
         width_(static_cast<double>(graph.transport_layout().width())) {}
 
   double factor_bytes(const SystemSize& s) const { return 8 * numbers() * s.nonzeros; }
-  /// Matrices and their permuted copies, the analysis, vectors.
+  /// Bytes of the matrices and their permuted copies, the symbolic analysis, and vectors.
   double workspace_bytes(const SystemSize& s) const {
-    // 64-bit row numbers and values of A and B; B of blocks has a row number for each value.
+    // 64-bit row numbers and values of A and B. In block graphs B has a row number for each value.
     const double entry = 16 + (is_complex_ ? 24 : 16 * width_);
     return 1.4 * entry * entries(s) + 500 * s.vertices;
   }
-  /// Of the next band, whose heat is found beside the rest of one: the factor of A, matrices, the graph.
+  /// Bytes of the next band, whose heat is computed at the same time as the other values of the current band: the factor of A, matrices,
+  /// the graph.
   double next_band_bytes(const SystemSize& s) const {
     return factor_bytes(s) / numbers() + 0.5 * workspace_bytes(s) + patch_bytes(s);
   }
-  /// Of a band that is cut out.
+  /// Bytes of the subgraph of a band.
   double patch_bytes(const SystemSize& s) const { return (12 + 8 * (d_ + width_)) * s.edges; }
   double system_seconds(const SystemSize& s) const {
-    // Complex operations are four real ones.
+    // A complex operation costs four real ones.
     const double operations = 1 + (is_complex_ ? 4 : std::pow(d_, 3));
     return 1.95e-7 * numbers() * entries(s) + 2.5e-11 * operations * s.operations +
            (is_delaunay_ ? 0 : 6e-7 * s.vertices);
   }
   double solve_seconds(const SystemSize& s) const { return 7e-9 * numbers() * s.nonzeros; }
-  /// The front that unfolds distances, four times the work where triangles are halved.
+  /// Bytes of the wavefront. @param halved  number of vertices of components whose edges have midpoints
   double front_bytes(double halved) const { return is_delaunay_ ? 1450 * halved : 0; }
   double front_seconds(double reached, double halved) const {
     return is_delaunay_ ? 2e-6 * reached + 3e-6 * std::min(halved, reached) : 0;
   }
 
  private:
-  /// Real ones per entry of the scalar factor, of both.
+  /// Real numbers in both factors per entry of the scalar factor.
   double numbers() const { return 1 + width_; }
   double entries(const SystemSize& s) const { return s.edges / 2 + s.vertices; }
 
@@ -200,7 +201,7 @@ class CostOf {
   double width_;
 };
 
-/// Of the vertices that have a row in the map, and of the program's own columns.
+/// Seconds per row of the map, including the columns of the program's output.
 constexpr double row_seconds = 1.2e-6;
 
 }  // namespace
@@ -210,7 +211,7 @@ Cost estimate_cost(const TangentGraph& graph, const Source& source, Strategy str
   if (strategy == Strategy::automatic) throw InvalidArgument("estimate_cost: strategy must be global or march");
   if (graph.dimension() != 2)
     throw InvalidArgument("estimate_cost: the graph has dimension " + std::to_string(graph.dimension()) +
-                          ", not 2; ask by its size");
+                          ", not 2; use the overload that takes a GraphSize");
   if (!(radius > 0)) throw InvalidArgument("radius is " + detail::number(radius) + "; it must be > 0");
   HeatOptions unchecked = options;
   unchecked.check_graph = false;

@@ -1,5 +1,5 @@
 /// \file
-/// What a map makes of a graph: the systems that are factored and the vertices that a march solves, counted and not solved.
+/// Counts the work of a map without solving: the size of the factored systems, and the vertices and bands of a march.
 #pragma once
 
 #include <span>
@@ -10,26 +10,27 @@
 
 namespace ahm {
 
-/// The scalar system of a part of a graph.
+/// Size of the scalar system of a part of a graph.
 struct SystemSize {
-  double vertices = 0, edges = 0;  ///< directed ones
-  double nonzeros = 0;             ///< of its factor
-  double operations = 0;           ///< that the factor takes
+  double vertices = 0, edges = 0;  ///< number of vertices and of directed edges
+  double nonzeros = 0;             ///< entries of the factor
+  double operations = 0;           ///< floating-point operations of the factorization
 };
 
-/// By the symbolic analysis that comes before a factorization.
+/// Measures a system by symbolic analysis.
 /// @param vertices  ascending
 SystemSize system_size(const TangentGraph& graph, std::span<const Index> vertices, const HeatOptions& options);
 SystemSize system_size(const TangentGraph& graph, const HeatOptions& options);
 
-/// By the shortest ways along edges, where the march itself asks the heat how far it came.
+/// Work of a march.
 struct MarchWork {
-  double reached = 0;  ///< vertices that are looked at
-  double solved = 0;   ///< vertices of all bands, where they overlap several times
+  double reached = 0;  ///< vertices that the march visits
+  double solved = 0;   ///< sum of the numbers of vertices of all bands, which overlap
   Index bands = 0;
-  SystemSize largest;  ///< band
+  SystemSize largest;  ///< size of the largest band
 };
 
+/// Estimates the work of a march from shortest edge paths. The march itself measures by its heat how far it came.
 /// @param radius  world units
 MarchWork march_work(const TangentGraph& graph, const Source& source, const MarchScales& scales, double radius,
                      const HeatOptions& options);

@@ -33,7 +33,7 @@ void FrameField::frame(Index vertex, double* out) const {
   layout_.make_orthogonal(out);
 }
 
-/// The same for a complex number, which most graphs ask for at every vertex.
+/// `frame` for complex numbers, without the general case: most graphs use it at every vertex.
 void FrameField::rotation(Index vertex, double* out) const {
   const double re = solution_[2 * static_cast<std::size_t>(vertex)],
                im = solution_[2 * static_cast<std::size_t>(vertex) + 1];

@@ -1,6 +1,6 @@
 /// \file
-/// One step of an unfolding front: a point at known distances from two corners of a triangle, beyond the side between them, seen from
-/// the third.
+/// One step of an unfolding front: computes the distance of the third corner of a triangle from a point whose distances from the other two
+/// corners are known.
 #pragma once
 
 #include <algorithm>
@@ -14,11 +14,11 @@
 
 namespace ahm {
 
-/// Of a ray shorter than this share of a side nobody knows the direction.
+/// Rays shorter than this share of a side have no reliable direction.
 inline constexpr double least_ray = 1e-6;
 
-/// Where a point lies in the layout of a triangle with a at 0, b at (ab, 0) and c at (cx, cy) above: at (x, -depth); the square of
-/// its distance from c, and where the line to c crosses the side, if `found`.
+/// A source point in the layout of a triangle with a at 0, b at (ab, 0) and c at (cx, cy), cy > 0. The point is at (x, -depth),
+/// `squared` is its squared distance from c. The line to c crosses the side ab at `share`: 0 at a, 1 at b. All are valid if `found`.
 struct Across {
   double squared, x, depth, share;
   bool found;
@@ -26,12 +26,12 @@ struct Across {
   double length() const { return std::sqrt(squared); }
 };
 
-/// Of a point at distances `from_a` and `from_b` below the side ab; not found where c is no nearer than the root of `limit`, or
-/// where the straight line to the point does not cross that side. It is asked a dozen times for each vertex, mostly in vain for
-/// any of these reasons: so all is computed, and decided at once.
+/// Locates a point below the side ab at the distances `from_a` and `from_b`. Not found if the squared distance of c is not below
+/// `limit`, or if the straight line from the point to c misses the side by more than the share `missed`. It is called a dozen times
+/// per vertex and mostly finds nothing, for any of these reasons. Therefore it computes everything and branches once.
 [[gnu::always_inline]] inline Across across_side(double from_a, double from_b, double ab, double cx, double cy,
                                                  double limit, double missed) {
-  // Sides that are shorter than this share of the other two, or of a distance, no longer tell where the point lies.
+  // Sides shorter than these shares of the other two sides, or of a distance, do not determine where the point lies.
   constexpr double shortest = 1e-6, shortest_far_away = 1e-13;
   const double x = 0.5 * (ab + (from_a - from_b) * (from_a + from_b) / ab);
   const double squared_y = (from_a - x) * (from_a + x), along = (cx - x) * (cx - x) + cy * cy + squared_y;
@@ -44,10 +44,10 @@ struct Across {
   return {squared, x, depth, std::clamp(at_side / (ab * height), 0.0, 1.0), found};
 }
 
-/// Whether c is certainly no nearer to that point than the root of `limit`: `along` of `across_side`, without its division. So it
-/// is of most vertices that the front has passed.
+/// Whether the squared distance of c from the point is certainly not below `limit`. It evaluates `along` of `across_side` without the
+/// division. This is true for most vertices that the front has passed.
 inline bool is_beyond(double from_a, double from_b, double ab, double cx, double cy, double limit) {
-  // Sums of products may be off by less than this share of the largest, unless they are below `least_cube`.
+  // Sums of products have a relative error below `rounding`, unless they are below `least_cube`.
   constexpr double rounding = 1e-12, least_cube = 1e-280;
   const double twice_x_ab = ab * ab + (from_a - from_b) * (from_a + from_b),
                squared = cx * cx + cy * cy + from_a * from_a;
@@ -55,27 +55,28 @@ inline bool is_beyond(double from_a, double from_b, double ab, double cx, double
   return (least * ab > cx * twice_x_ab + least_cube) & (std::abs(twice_x_ab) <= 2.1 * ab * from_a);
 }
 
-/// `v` turned as the ray `from` must be to become the ray `to`, the other way round if `side` is -1; unit length.
+/// Rotates `v` by the angle from the ray `from` to the ray `to`, or by its negative if `side` is -1. Unit length.
 inline Vec2 turned_with(const Vec2& v, const Vec2& from, const Vec2& to, double side) {
   const double along = dot(from, to), across = side * cross(from, to), by = length(Vec2{along, across});
   return {(v[0] * along - v[1] * across) / by, (v[1] * along + v[0] * across) / by};
 }
 
-/// A direction at a point of which two neighbors have given an estimate each.
+/// The mean of two estimates of a direction.
 struct DirectionAcross {
   Vec2 direction;
-  double difference;  ///< of the two estimates, radians
+  double difference;  ///< angle between the two estimates, radians
 };
 
-/// The direction at the point of a ray that crosses the side, from those of the rays to a and b: the mean of the
-/// two estimates, weighted by how near the ray crosses; that of the nearer end where they differ too much to be of one front.
-/// @param share    of the side where the ray crosses
-/// @param towards  a place on the ray, in the layout of the triangle
+/// The direction in which a ray that crosses the side leaves the source point. The directions of the rays to a and b give one
+/// estimate each. The result is their mean, weighted by how near the ray crosses. If they differ too much to belong to one front, it
+/// is the estimate of the nearer end.
+/// @param share    where the ray crosses the side: 0 at a, 1 at b
+/// @param towards  a point on the ray, in the layout of the triangle
 /// @param side     1: a, b, c counterclockwise; -1: clockwise
 inline DirectionAcross direction_across(const Across& point, double share, const Vec2& towards, double ab,
                                         const Vec2& to_a, const Vec2& to_b, double side) {
-  // Rays to a and b that differ by more than this many times the angle at which the side is seen come along two ways, as around
-  // a tube, and there is none between them.
+  // If the directions differ by more than this many times the angle that the side subtends at the point, the rays to a and b arrive along
+  // two different paths, for example around a tube, and no ray passes between them.
   constexpr double two_ways = 6;
   const double x = point.x, depth = point.depth;
   const Vec2 a{-x, depth}, b{ab - x, depth}, c{towards[0] - x, towards[1] + depth};
@@ -89,15 +90,19 @@ inline DirectionAcross direction_across(const Across& point, double share, const
   return {size > 0 ? Vec2{sum[0] / size, sum[1] / size} : by_a, difference};
 }
 
-/// u of a vertex, at least 1.
+/// Solves the factored eikonal equation |grad(T0 u)| = 1 [FLZ09] at a vertex; T0 is the straight-line distance:
+///
+///     sum_k (T0 (u - u_k) / h_k + c_k u)^2 = 1
+///
 /// @param straight  T0 > 0
-/// @param upwind    the neighbours from which the front comes, one per axis at most, at least one in all: the `length` of the edge, the
-///                  `cosine` between it, towards the vertex, and the straight line, and the `factor` u; in another order afterwards
+/// @param upwind    the neighbors k from which the front comes, at least one, at most one per axis: the `length` h_k of the edge, the
+///                  `cosine` c_k between the edge (towards the vertex) and the straight line, and the `factor` u_k. The order changes
+/// @return u, at least 1
 template <class Upwind>
 double eikonal_factor(double straight, std::span<Upwind> upwind) {
   const auto slope = [&](const Upwind& k) { return straight / k.length + k.cosine; };
   const auto offset = [&](const Upwind& k) { return straight / k.length * k.factor; };
-  // An axis counts where the front comes along it, which is from this u on.
+  // The front comes along an axis if u is above this value.
   const auto begin = [&](const Upwind& k) { return slope(k) > 0 ? offset(k) / slope(k) : INFINITY; };
   std::sort(upwind.begin(), upwind.end(), [&](const Upwind& a, const Upwind& b) { return begin(a) < begin(b); });
   double u = INFINITY, ss = 0, so = 0, oo = -1;
@@ -110,8 +115,8 @@ double eikonal_factor(double straight, std::span<Upwind> upwind) {
   return std::max(1.0, u);
 }
 
-/// Whether edges are all at right angles or along each other.
-/// @param axis  to be filled, per edge: the first one along the same line
+/// Whether any two edges are orthogonal or parallel.
+/// @param axis  output: for each edge the number of the first edge parallel to it
 inline bool find_axes(const Star& star, std::vector<std::size_t>& axis) {
   constexpr double same = 1e-9;
   axis.resize(star.degree());
@@ -130,43 +135,44 @@ inline bool find_axes(const Star& star, std::vector<std::size_t>& axis) {
   return star.degree() > 0;
 }
 
-/// The curvature of a front does not depart from that of the circle by more than this over the length of a side or step:
-/// where it would, the mesh is too coarse to tell.
+// The curvature of the front at distance d is k = 1/d - m/d^2, where m is the focusing: m' = K d^2 + m^2/d^2 (docs/concepts/accuracy.md).
+
+/// Bound of m/d^2 times the length of a side or step. On a mesh where it would be larger, the triangles are too large for the correction.
 inline constexpr double max_bend = 0.2;
-/// `curvature_correction` is no more than this share of the side, nor of the distance.
+/// Bound of `curvature_correction` as a share of the side and of the distance.
 inline constexpr double max_curvature_correction = max_bend / 8;
 
-/// The focusing at distance `to`, from that at distance `from`: the front goes on as over a plane, exactly, and is bent by the
-/// curvature on the way.
+/// m at the distance `to`, computed from m at the distance `from`. The solution over a plane (K = 0) is exact; the integral of K d^2
+/// is added.
 inline double focusing_after(double focusing, double from, double to, double curvature) {
   const double step = to - from;
   if (!(step > 0)) return focusing;
   const double most = max_bend * to * to / step;
-  const double spared = from > 0 ? 1 - focusing * step / (from * to) : 1;  // none left: a focus lies between
+  const double spared = from > 0 ? 1 - focusing * step / (from * to) : 1;  // <= 0: there is a focus in between
   const double over_plane = spared > 0 ? focusing / spared : most;
   const double bent = std::clamp(over_plane + curvature * step * (to * to + to * from + from * from) / 3, -most, most);
-  return std::isfinite(bent) ? bent : 0;  // lengths beyond the squares of numbers
+  return std::isfinite(bent) ? bent : 0;  // the squares of lengths may overflow
 }
 
-/// By how much the curvature of a front is less than that of the circle, times the length of a side.
-/// @param distance  of the front
+/// m/d^2 times the length of a side: the difference between the curvature of a circle and that of the front.
+/// @param distance  d, distance of the front
 inline double bend_along(double side, double focusing, double distance) {
   if (!(distance > 0)) return 0;
   const double most = max_bend * std::min(1.0, distance / side);
   return std::clamp(focusing / (distance * distance) * side, -most, most);
 }
 
-/// By how much the distance of a point on a side is more than on the circle through its ends.
-/// @param bend          `bend_along` the side
-/// @param share         of the side, from one end to the point
-/// @param squared_sine  of the angle between the way and the side
+/// The distance of a point on a side minus its distance if the front were a circle.
+/// @param bend          `bend_along` of the side
+/// @param share         position of the point on the side: 0 at one end, 1 at the other
+/// @param squared_sine  squared sine of the angle between the path and the side
 inline double curvature_correction(double bend, double side, double share, double squared_sine) {
   return 0.5 * share * (1 - share) * squared_sine * side * bend;
 }
 
-/// Where the ray to a point beyond a side crosses it, as a share of the side: a front that is less bent than the circle has rays
-/// that diverge less, and this one crosses farther from the middle.
-/// @param share   where the ray from the center of the circle crosses
+/// Where the ray to a point beyond a side crosses the side, as a share of it. The rays of a front that is less curved than a circle diverge
+/// less, so the ray crosses farther from the middle.
+/// @param share   where the ray crosses if the front is a circle
 /// @param beyond  length of the ray beyond the side
 inline double bent_crossing(double share, double bend, double side, double beyond) {
   return std::clamp(share + (share - 0.5) * bend * beyond / side, 0.0, 1.0);

@@ -54,7 +54,7 @@ double KnownValues::level(Index number) const {
 }
 
 void KnownValues::axes(Index number, double* out) const {
-  // One vertex is a field of its own, a column after the other.
+  // A field of a single vertex, column by column.
   Scratch columns(width_);
   const int d = layout_.dimension;
   for (int a = 0; a < layout_.columns(); ++a)

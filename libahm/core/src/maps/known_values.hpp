@@ -1,5 +1,5 @@
 /// \file
-/// Memory for what is known of some of a graph's vertices: it grows with those, not with the graph.
+/// Stores values of some vertices of a graph. The memory is proportional to their number, not to the size of the graph.
 #pragma once
 
 #include <algorithm>
@@ -16,9 +16,8 @@
 
 namespace ahm {
 
-/// Numbers vertices in the order in which they are first asked for; numbers of forgotten vertices are given again. Besides
-/// one page of 1 KB for every 256 successive vertices of which one was asked for and one was not forgotten it takes 10
-/// bytes per 256 vertices of the graph.
+/// Numbers vertices in the order of their first use. Numbers of forgotten vertices are reused. The memory is 10 bytes per 256 vertices of
+/// the graph, and one page of 1 KB per 256 successive vertices, from the first use of one of them until all of them are forgotten.
 class ReachedNumbers {
  public:
   static constexpr Index forgotten = -2;
@@ -26,14 +25,14 @@ class ReachedNumbers {
   explicit ReachedNumbers(Index vertices)
       : vertices_(static_cast<std::size_t>(vertices)), pages_(vertices_ / page_size + 1), gone_(pages_.size()) {}
 
-  /// -1 for a vertex never asked for by `number`, `forgotten` for one that was forgotten.
+  /// Number of a vertex; -1: not numbered by `number`, `forgotten`: was numbered and then forgotten.
   Index find(Index vertex) const {
     const std::size_t place = static_cast<std::size_t>(vertex) / page_size;
     const Page* page = pages_[place].get();
     if (page == nullptr) return gone_[place] > 0 ? forgotten : -1;
     return (*page)[static_cast<std::size_t>(vertex) % page_size];
   }
-  /// Of a vertex that was not forgotten.
+  /// Number of a vertex, a new one if it has none. The vertex must not be forgotten.
   Index number(Index vertex) {
     std::unique_ptr<Page>& page = pages_[static_cast<std::size_t>(vertex) / page_size];
     if (!page) {
@@ -47,7 +46,7 @@ class ReachedNumbers {
     free_.pop_back();
     return own;
   }
-  /// Gives up the number of a vertex that has one. A page of which all are forgotten goes too.
+  /// Frees the number of a vertex that has one. Frees the page, too, if all its vertices are forgotten.
   void forget(Index vertex) {
     const std::size_t place = static_cast<std::size_t>(vertex) / page_size;
     Index& own = (*pages_[place])[static_cast<std::size_t>(vertex) % page_size];
@@ -55,7 +54,8 @@ class ReachedNumbers {
     own = forgotten;
     if (++gone_[place] == std::min(page_size, vertices_ - place * page_size)) pages_[place].reset();
   }
-  /// In the order of vertices: calls each(vertex, number) for those that have one, gone(begin, end) for those that were forgotten.
+  /// Visits the vertices in ascending order: calls each(vertex, number) for those with a number, gone(begin, end) for ranges of forgotten
+  /// ones.
   template <class Each, class Gone>
   void visit(const Each& each, const Gone& gone) const {
     for (std::size_t place = 0; place < pages_.size(); ++place) {
@@ -69,7 +69,7 @@ class ReachedNumbers {
           gone(vertex, vertex + 1);
     }
   }
-  /// Numbers given so far, at most as many as there were at a time.
+  /// One more than the largest number so far: the largest count of vertices that had a number at the same time.
   Index count() const { return count_; }
   std::size_t bytes() const {
     std::size_t taken = 0;
@@ -84,12 +84,12 @@ class ReachedNumbers {
 
   std::size_t vertices_;
   std::vector<std::unique_ptr<Page>> pages_;
-  std::vector<std::uint16_t> gone_;  ///< forgotten vertices of each page
-  std::vector<Index> free_;          ///< numbers to be given again
+  std::vector<std::uint16_t> gone_;  ///< number of forgotten vertices of each page
+  std::vector<Index> free_;          ///< numbers to reuse
   Index count_ = 0;
 };
 
-/// A table of rows of equal width that grows without moving what it holds. New rows are zero.
+/// A table of rows of equal width that grows without moving existing rows. New rows are zero.
 template <class T>
 class GrowingRows {
  public:
@@ -114,25 +114,25 @@ class GrowingRows {
   std::vector<std::unique_ptr<T[]>> chunks_;
 };
 
-/// Powers of two that a solve's numbers are to be multiplied by.
+/// Binary exponents: the values of a solve, times 2 to these powers, are the values of the map.
 struct HeatExponents {
-  std::int32_t heat = 0;   ///< of lambda, the variant's unknown and its second moments
-  std::int32_t frame = 0;  ///< of U~
+  std::int32_t heat = 0;   ///< exponent of lambda, the variant's unknown and its second moments
+  std::int32_t frame = 0;  ///< exponent of U~
 };
 
-/// lambda, U~, the variant's unknown and its second moments of vertices, as mantissas with exponents of their own: nothing
-/// underflows at any distance. Vertices go by the numbers of `ReachedNumbers`.
+/// Values of lambda, U~, the variant's unknown and its second moments at vertices. They are mantissas with an exponent per vertex, so that
+/// nothing underflows at any distance. Vertices are identified by the numbers of `ReachedNumbers`.
 class KnownValues {
  public:
-  /// @param with_frames  else of solves without frames
+  /// @param with_frames  false: the solves have no frames
   KnownValues(const TangentGraph& graph, const VariantSystem& system, bool with_frames);
 
-  /// Takes over the heat that a solve found at a vertex.
+  /// Stores the heat of a vertex.
   void take_heat(Index number, double lambda, std::int32_t exponent);
-  /// Takes over all else that vertex `place` of a solve found. Others may ask for heat meanwhile.
+  /// Stores all other values of a vertex, which is vertex `place` of the solve. Other threads may read the heat at the same time.
   void take_values(Index number, Index place, const AffineHeat& heat, std::size_t source, std::int32_t frame_exponent);
 
-  /// All that is known of a vertex but its exponents.
+  /// All values of a vertex, without the exponents.
   std::span<const double> row(Index number) const { return {rows_[number], row_width()}; }
   HeatExponents exponents(Index number) const { return *exponents_[number]; }
   std::size_t row_width() const { return 3 + 2 * d_ + width_; }
@@ -140,18 +140,19 @@ class KnownValues {
 
   double heat(Index number) const { return *rows_[number]; }
   std::size_t bytes() const { return rows_.bytes() + exponents_.bytes(); }
-  /// -log lambda
+  /// -log lambda, including the exponent.
   double level(Index number) const;
   /// U_i as d x d numbers, row major.
   void axes(Index number, double* out) const;
 
-  /// The exponents that bring the largest of these values to `heat_scale`; of none, less than any other.
+  /// The exponent for which the largest lambda of these vertices is about `heat_scale`; very small if there is none.
   std::int32_t heat_exponent_for(std::span<const Index> numbers) const;
+  /// The exponent for which the largest entry of U~ at these vertices is about `heat_scale`; very small if there is none.
   std::int32_t frame_exponent_for(std::span<const Index> numbers) const;
-  /// What a vertex gives to the right-hand side of A at a neighbour: tau w_ij lambda_j.
+  /// Dirichlet term tau w_ij lambda_j of vertex j in the right-hand side of A at its neighbor i.
   double heat_along(Index number, double conductance, std::int32_t exponent) const;
-  /// Adds to the last entry of `in` all else that vertex j = star.neighbors[edge], of this number, gives to the right-hand
-  /// sides of the star's own vertex: B gets tau w_ij R_ji U~_j, and so on for the other systems.
+  /// Adds the other Dirichlet terms of vertex j = star.neighbors[edge], which has this number, to the last entry of `in`, the right-hand
+  /// sides at the star's vertex i: tau w_ij R_ji U~_j for B, and the corresponding terms of the other systems.
   void add_to(RightHandSide& in, const Star& star, std::size_t edge, Index number, double conductance,
               HeatExponents exponents) const;
 
@@ -164,8 +165,8 @@ class KnownValues {
 
   const VariantSystem& system_;
   TransportLayout layout_;
-  std::size_t d_, width_;     ///< width of frames, 0 without them
-  double to_units_;           ///< from the graph's lengths to those of the solution
+  std::size_t d_, width_;     ///< dimension; numbers per frame, 0 without frames
+  double to_units_;           ///< graph units -> units of the solution
   GrowingRows<double> rows_;  ///< lambda, both second moments, the unknown, r, U~
   GrowingRows<HeatExponents> exponents_;
 };

@@ -28,8 +28,8 @@ using Regions = std::span<const std::span<const Vertex>>;
 void check(const TangentGraph& graph, std::span<const Source> sources, Regions regions, const DiffusionOptions& heat,
            double margin) {
   if (regions.size() != sources.size())
-    throw InvalidArgument("there are " + std::to_string(regions.size()) + " regions, of " +
-                          std::to_string(sources.size()) + " sources");
+    throw InvalidArgument("local_coordinates: `regions` has size " + std::to_string(regions.size()) + ", `sources` " +
+                          std::to_string(sources.size()) + "; the sizes must be equal");
   check_patches(graph, sources, heat, margin);
   for (const auto region : regions)
     for (const auto [vertex] : region)
@@ -38,7 +38,7 @@ void check(const TangentGraph& graph, std::span<const Source> sources, Regions r
                               ")");
 }
 
-/// How far along edges (graph units) the farthest vertex of its region is from every source.
+/// Length of the edge path from each source to the farthest vertex of its region, graph units.
 std::vector<double> extents(const TangentGraph& graph, const ComponentScales& scales, std::span<const Source> sources,
                             Regions regions) {
   std::vector<double> result(sources.size(), 0);
@@ -100,9 +100,9 @@ std::vector<double> local_coordinates(const TangentGraph& graph, std::span<const
 
 namespace {
 
-/// Path lengths along edges exceed distances by up to this factor on good graphs; where it is not enough, a patch grows.
+/// Edge paths of good graphs are longer than distances by up to this factor. If a patch turns out to be too small, the factor increases.
 constexpr double usual_detour = 1.2;
-/// No sensible graph has longer ones. Beyond, it is the map that is short: folded at a cut locus.
+/// Largest factor to try. If it is not sufficient, the distances of the map are too short, for example because it folds at a cut locus.
 constexpr double largest_detour = 2;
 
 void check(const TangentGraph& graph, std::span<const Source> sources, const LocalMapOptions& options) {
@@ -111,12 +111,12 @@ void check(const TangentGraph& graph, std::span<const Source> sources, const Loc
   const bool by_number = options.radius == 0 && options.nearest > 0;
   if (!by_number && (!(options.radius > 0) || !std::isfinite(options.radius)))
     throw InvalidArgument("radius is " + detail::number(options.radius) +
-                          "; it must be finite and > 0, or 0 with a number of nearest neighbours");
+                          "; it must be finite and > 0, or 0 if `nearest` is > 0");
   check_patches(graph, sources, options.heat, options.margin);
 }
 
-/// How far from each source its map goes, world units: the radius, or as far as its nearest neighbours are along edges,
-/// where distances are no longer.
+/// Radius of each map, world units: the radius of the options, or the length of the edge path to the last of the nearest neighbors,
+/// which is an upper bound of its distance.
 std::vector<double> radii_of(const TangentGraph& graph, std::span<const Source> sources,
                              const LocalMapOptions& options) {
   std::vector<double> radii(sources.size(), options.radius);
@@ -132,14 +132,14 @@ std::vector<double> radii_of(const TangentGraph& graph, std::span<const Source> 
   return radii;
 }
 
-/// Bytes per entry of the result, at the least.
+/// Smallest number of bytes per entry of the result.
 double entry_bytes(const TangentGraph& graph) {
   return static_cast<double>(2 * sizeof(Index) + sizeof(double) * (2 + static_cast<std::size_t>(graph.dimension()) +
                                                                    graph.transport_layout().width()));
 }
 
-/// Better refused than begun: where so much of the graph lies within the radius of half of the sources that these maps alone
-/// fill the memory. The middle one of some sources, spread over all, tells.
+/// Throws if the maps of half of the sources would exceed the memory. Estimates the median number of vertices within the radius from
+/// a sample of the sources.
 void check_memory(const TangentGraph& graph, std::span<const Source> sources, std::span<const double> radii,
                   const LocalMapOptions& options) {
   const double memory = options.memory > 0 ? static_cast<double>(options.memory) : machine_memory();
@@ -160,13 +160,13 @@ void check_memory(const TangentGraph& graph, std::span<const Source> sources, st
   }
   std::sort(counts.begin(), counts.end());
   if (const double count = counts[samples / 2]; count > enough)
-    throw ResourceExhausted("half of the " + std::to_string(sources.size()) + " local maps would hold more than " +
-                            detail::number(std::floor(enough)) + " vertices each, and fill the memory of " +
+    throw ResourceExhausted("half of the " + std::to_string(sources.size()) + " local maps would contain more than " +
+                            detail::number(std::floor(enough)) + " vertices each, which exceeds the memory of " +
                             detail::gigabytes(memory) +
-                            "; take a smaller radius, fewer sources, or the nearest vertices alone");
+                            "; use a smaller radius, fewer sources, or only the nearest vertices");
 }
 
-/// One source's part of the result.
+/// The entries of one source.
 struct Entries {
   std::vector<Vertex> vertices;
   std::vector<double> logs, distances, transports;
@@ -183,7 +183,7 @@ class Worker {
         patches_(graph, scales, options.heat),
         d_(static_cast<std::size_t>(graph.dimension())) {}
 
-  /// Solves for the sources of one group on one patch; result[s] for source s.
+  /// Solves the sources of one group on one patch. Writes result[s] for each source s.
   void solve(std::span<const Index> members, std::vector<Entries>& result) {
     std::vector<Source> sources;
     for (Index s : members) sources.push_back(sources_[s]);
@@ -215,12 +215,12 @@ class Worker {
  private:
   enum class Outcome {
     complete,
-    patch_too_small,   ///< it does not hold all within `wanted` of a source
-    radius_too_small,  ///< fewer vertices than the nearest that are asked for lie within
+    patch_too_small,   ///< the patch does not contain all vertices within `wanted` of a source
+    radius_too_small,  ///< fewer vertices than `LocalMapOptions::nearest` lie within the radius
   };
 
-  /// Distances of the patch from those of its sources whose distances need no heat: a patch that is too small is known by them
-  /// before anything is solved on it.
+  /// Unfolds the distances on the patch from the sources where this is possible. So a patch that is too small is detected before its
+  /// systems are solved.
   Outcome measure(const Patch& patch, std::span<const Index> members, double wanted) {
     const std::size_t n = patch.vertices.size();
     std::shared_ptr<const Wavefront::OneRings> stars;
@@ -230,7 +230,7 @@ class Worker {
     }
     distances_.resize(members.size() * n);
     for (std::size_t k = 0; k < members.size(); ++k) {
-      // The last members of a group lie at its rim, where a patch that is too small shows first.
+      // The last members of a group are nearest to the edge of the patch, so they detect first that it is too small.
       const std::size_t m = options_.radius > 0 ? members.size() - 1 - k : k;
       if (!unfolds(graph_, patch.sources[m])) continue;
       const double radius = radii_[members[m]];
@@ -245,22 +245,23 @@ class Worker {
     return Outcome::complete;
   }
 
-  /// Where the edge of a patch lies in space; nowhere if the graph knows no frames.
+  /// Finds the positions of the edge of the patch in space; none if the graph has no frames.
   void find_rim(const Patch& patch) {
     rim_.clear();
     for (const Index k : patch.edge)
       if (const auto frame = graph_.frame(patch.vertices[k])) rim_.push_back(frame->origin);
   }
 
-  /// Whether the patch holds all within `wanted` of a source by straight lines already, which no way is shorter than: then
-  /// nobody asks for distances beyond the radius.
+  /// Whether the edge of the patch is farther than `wanted` from the source even along straight lines. No path is shorter, so distances
+  /// beyond the radius are not needed.
   bool is_within(const Patch& patch, const Source& source, double wanted) const {
     const std::optional<Vec3> start = source_position(graph_, source);
     return start && !rim_.empty() && rim_.size() == patch.edge.size() &&
            std::ranges::all_of(rim_, [&](const Vec3& end) { return distance(end, *start) >= wanted; });
   }
 
-  /// Whether that is far enough, given the distances of the patch from a source.
+  /// Whether the patch and the radius are large enough.
+  /// @param distance  distance of each vertex of the patch from a source
   Outcome judge(const Patch& patch, std::span<const double> distance, double wanted, double radius) const {
     for (Index k : patch.edge)
       if (distance[k] < wanted * (1 - 1e-9)) return Outcome::patch_too_small;
@@ -281,7 +282,7 @@ class Worker {
     return Outcome::complete;
   }
 
-  /// The distances of a patch from one of its sources, to the straight line where they are below it.
+  /// Increases distances on a patch that are shorter than the straight line from the source to its length.
   void raise(const PatchMaps& patch, const Source& source, std::span<double> distances) const {
     const std::optional<Vec3> start = straight_line_origin(graph_, source);
     if (!start) return;
@@ -290,8 +291,9 @@ class Worker {
         distances[k] = bounded_distance(distance(frame->origin, *start), distances[k]);
   }
 
-  /// The vertices within the radius, nearest first.
-  /// @param m  number in the patch of this source
+  /// Collects the vertices within the radius, nearest first.
+  /// @param m       number of the source in the patch
+  /// @param source  number of the source among all sources
   Outcome collect(const PatchMaps& patch, std::size_t m, Index source, double wanted, Entries& entries) {
     const double radius = radii_[source];
     const std::size_t n = patch.vertices.size();
@@ -304,7 +306,7 @@ class Worker {
     if (options_.bound_by_straight_line) raise(patch, sources_[source], distance);
     phi_.resize(n * d_);
     order_.clear();
-    // A patch without an edge is all there is.
+    // A patch without an edge contains the whole component.
     const double farthest = options_.radius == 0 && patch.edge.empty() ? std::numeric_limits<double>::max() : radius;
     for (std::size_t k = 0; k < n; ++k) {
       const auto vertex = static_cast<Index>(k);
@@ -344,17 +346,17 @@ class Worker {
 
   const TangentGraph& graph_;
   std::span<const Source> sources_;
-  std::vector<double>& radii_;  ///< of the sources; those of one group belong to one worker
+  std::vector<double>& radii_;  ///< radius of each source; only the worker of its group changes it
   const LocalMapOptions& options_;
   PatchSolver patches_;
   std::size_t d_;
-  std::vector<double> distances_;  ///< of the patch at hand from each of its sources, n each
-  std::vector<Vec3> rim_;          ///< places of its edge
+  std::vector<double> distances_;  ///< distances on the current patch from each of its sources, n each
+  std::vector<Vec3> rim_;          ///< positions of the vertices at the edge of the patch
   std::vector<double> phi_;
-  std::vector<std::pair<double, Index>> order_;  ///< those within the radius, nearest first
+  std::vector<std::pair<double, Index>> order_;  ///< distance and number of vertices within the radius, nearest first
 };
 
-/// Puts a column of all entries together; these are given up one by one, so that the peak is little more than the result.
+/// Concatenates a column of all entries. Frees the parts one by one, so that the peak memory is little more than the result.
 template <class T>
 void join(std::vector<Entries>& entries, std::vector<T> Entries::*column, std::size_t total, std::vector<T>& out) {
   out.reserve(total);

@@ -72,9 +72,9 @@ std::vector<double> LogMap::coordinates(const Source& point) const {
   double total = 0, farthest = 0;
   for (double b : point.weights()) total += b;
   if (point.is_curve() || !(total > 0) || point.dimension().value_or(dimension_) != dimension_)
-    throw InvalidArgument("a point of the graph is needed: no curve, of its dimension, of positive weight");
+    throw InvalidArgument("LogMap::coordinates: the source is not a point of positive weight in the map's dimension");
   const auto d = static_cast<std::size_t>(dimension_);
-  std::vector<double> phi(d, 0.0), rest(d, 0.0), there(d);  // rest: what the offsets leave, in the point's axes
+  std::vector<double> phi(d, 0.0), rest(d, 0.0), there(d);  // rest: minus the mean offset, in the axes of the point
   const auto heaviest = static_cast<std::size_t>(std::max_element(point.weights().begin(), point.weights().end()) -
                                                  point.weights().begin());
   for (std::size_t k = 0; k < point.vertices().size(); ++k) {

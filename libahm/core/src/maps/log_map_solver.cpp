@@ -27,13 +27,13 @@
 namespace ahm {
 namespace {
 
-/// Sources per block of right-hand sides: as many as 2^24 vertices' worth of memory allows, at most 16. It must not
-/// depend on the number of threads, since the block size may change the last bits of a solve.
+/// Number of sources per block of right-hand sides, 1 to 16: sources times vertices is at most 2^24 if possible. It must not depend on
+/// the number of threads, because the block size may change the last bits of a solve.
 std::size_t sources_per_block(Index n) {
   return static_cast<std::size_t>(std::clamp<Offset>((Offset{1} << 24) / std::max<Index>(n, 1), 1, 16));
 }
 
-/// A map's options, with the solver's where the map has none of its own.
+/// Options of a map after the solver's options have replaced missing values.
 struct MapSettings {
   Variant variant;
   double radius;
@@ -52,7 +52,7 @@ MapSettings settings_of(const MapOptions& map, const HeatOptions& options) {
           .progress = map.progress.value_or(options.progress)};
 }
 
-/// Of a march: distances tell where one ends.
+/// What a march must compute. Within a radius it needs distances, because they determine where it ends.
 MarchGoal goal_of(const MapSettings& map) {
   return map.distances || std::isfinite(map.radius) ? MarchGoal::map : MarchGoal::coordinates;
 }
@@ -82,7 +82,8 @@ struct LogMapSolver::Impl {
   void factor(const Progress& progress) const;
   void check_memory_of_factors() const;
   void check_memory_of_maps(std::size_t count, const MapSettings& map) const;
-  /// Kept by solvers that make many maps.
+  /// One-rings of the graph, computed at the first call; null on graphs that are not triangulations. With strategy `march` they
+  /// contain only the vertices that have midpoints.
   std::shared_ptr<const Wavefront::OneRings> stars(unsigned threads) const {
     if (!graph.is_delaunay()) return nullptr;
     std::call_once(neighborhood_once, [&] {
@@ -111,14 +112,14 @@ struct LogMapSolver::Impl {
 
 namespace {
 
-/// @param what  takes so much, in the words of the message
+/// @param what  the data that needs the memory, with a plural verb: "... do not fit into memory"
 void check_memory(double bytes, double memory, const std::string& what, const std::string& advice) {
   if (!(memory > 0 && bytes > memory)) return;
-  throw ResourceExhausted(what + ", about " + detail::gigabytes(bytes) + " of " + detail::gigabytes(memory) + "; " +
+  throw ResourceExhausted(what + " (about " + detail::gigabytes(bytes) + " of " + detail::gigabytes(memory) + "); " +
                           advice);
 }
 
-/// The checks come before anything else is asked of the graph.
+/// Checks the options and the graph before the first member of `Impl` reads the graph.
 const TangentGraph& checked(const TangentGraph& graph, const HeatOptions& options) {
   check_heat_options(graph, options);
   return graph;
@@ -144,8 +145,8 @@ void LogMapSolver::Impl::factor(const Progress& progress) const {
   });
 }
 
-/// The map that `values` tell of.
-/// @param unfolded  empty: distances are those of heat, if any are wanted
+/// Makes a map from solved values.
+/// @param unfolded  empty: the distances, if the map has any, are those by heat
 template <class Values>
 LogMap LogMapSolver::Impl::map_of(const Values& values, Strategy how, const MarchStatistics& march,
                                   const Source& source, const Unfolded& unfolded, const MapSettings& map,
@@ -200,7 +201,7 @@ LogMap LogMapSolver::Impl::marched(const March& front, const Source& source, con
   return map_of(MarchedValues(front, map.radius), Strategy::march, front.statistics(), source, unfolded, map, threads);
 }
 
-/// Where a global solve leaves vertices beyond its reach, strategy `automatic` marches on.
+/// Makes a map from a global solve. If vertices are unreached, strategy `automatic` continues by a march.
 LogMap LogMapSolver::Impl::finished(AffineHeat& heat, std::size_t s, const Source& source, const Unfolded& unfolded,
                                     const MapSettings& map, unsigned threads) const {
   LogMap result = map_of(GlobalValues(heat, s), Strategy::global, {}, source, unfolded, map, threads);
@@ -218,7 +219,7 @@ LogMap LogMapSolver::Impl::finished(AffineHeat& heat, std::size_t s, const Sourc
 std::vector<LogMap> LogMapSolver::Impl::solve_block(std::span<const Source> sources, const MapSettings& map,
                                                     unsigned threads) const {
   std::vector<LogMap> maps;
-  std::vector<Unfolded> unfolded;  // of the sources
+  std::vector<Unfolded> unfolded;  // one per source
   const auto unfold = [&] {
     if (unfolded.empty())
       for (const Source& source : sources)
@@ -227,7 +228,7 @@ std::vector<LogMap> LogMapSolver::Impl::solve_block(std::span<const Source> sour
                                : Unfolded{});
   };
   if (strategy == Strategy::march) {
-    const bool ends = std::isfinite(map.radius);  // where distances say, so that they come first
+    const bool ends = std::isfinite(map.radius);  // distances determine where, so unfold them first
     if (ends) unfold();
     for (std::size_t s = 0; s < sources.size(); ++s) {
       March on = front(map, ends ? &unfolded[s] : nullptr, threads);
@@ -254,25 +255,25 @@ std::vector<LogMap> LogMapSolver::Impl::solve_block(std::span<const Source> sour
   return maps;
 }
 
-/// A marching solver was asked for the factors that it does without: better refused than swapped for.
+/// Throws if a solver with strategy `march` is to factor the whole graph and the factors do not fit into memory.
 void LogMapSolver::Impl::check_memory_of_factors() const {
   check_memory(estimate_cost({graph.size(), graph.dimension(), graph.transport_kind()}, Strategy::global).bytes,
                options.memory > 0 ? static_cast<double>(options.memory) : machine_memory(),
-               "this needs the factors of all " + std::to_string(graph.size()) + " vertices",
-               "thin the surface or cut out the part that is wanted");
+               "the factors of all " + std::to_string(graph.size()) + " vertices do not fit into memory",
+               "simplify the surface or cut out the part of interest");
 }
 
-/// Of the maps alone: better refused than begun.
+/// Throws if the maps do not fit into memory.
 void LogMapSolver::Impl::check_memory_of_maps(std::size_t count, const MapSettings& map) const {
   const auto d = static_cast<double>(graph.dimension());
   const double numbers = d + (map.distances ? 1 : 0) + (map.spread ? 1 : 0) + (map.frames ? d * d : 0);
   check_memory(static_cast<double>(count) * graph.size() * (numbers * sizeof(double) + sizeof(Status)),
                machine_memory(),
-               std::to_string(count) + " maps of " + std::to_string(graph.size()) + " vertices fill the memory",
-               "solve for fewer at a time, or for local maps");
+               std::to_string(count) + " maps of " + std::to_string(graph.size()) + " vertices do not fit into memory",
+               "solve fewer at a time, or use local maps");
 }
 
-/// One where the address space is limited and has no room for what threads take beside a map.
+/// Number of threads to use: 1 if the address space is limited and too small for the additional memory of the threads.
 unsigned LogMapSolver::Impl::threads_for(unsigned requested) const {
   const unsigned threads = detail::thread_count(requested);
   const double left = address_space_left();
@@ -305,7 +306,7 @@ std::vector<LogMap> LogMapSolver::solve(std::span<const Source> sources, const M
   if (sources.size() > 1) impl_->check_memory_of_maps(sources.size(), settings);
   const std::size_t block = impl_->strategy == Strategy::global ? sources_per_block(impl_->graph.size()) : 1;
   const auto count = static_cast<Offset>(sources.size());
-  // A single block cannot be shared out: its own steps use the threads instead, where that pays.
+  // A single block is not distributed over threads. On larger graphs the steps within the block use the threads instead.
   const bool single = sources.size() <= block && impl_->graph.size() > 5000;
   const unsigned threads_per_block = single ? threads : 1;
 

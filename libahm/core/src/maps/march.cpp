@@ -39,7 +39,7 @@ MarchState March::state() const {
 void March::restore(const MarchState& state) {
   const std::size_t known = known_.row_width(), width = known + d_ + 2;
   if (state.values.size() != state.vertices.size() * width || state.exponents.size() != state.vertices.size())
-    throw InvalidArgument("the state of a march is that of another one");
+    throw InvalidArgument("the saved state belongs to another march: its size does not fit; start from the source");
   for (std::size_t run = 0; run + 1 < state.passed.size(); run += 2)
     for (Index vertex = state.passed[run]; vertex < state.passed[run + 1]; ++vertex) {
       way(vertex);
@@ -106,19 +106,19 @@ void March::run_on(const AffineHeat& heat, std::size_t s, const Source& source) 
   march(nullptr);
 }
 
-/// A band on its way. Its heat says what of it is accepted and where the next band lies; the rest is found after that.
+/// The solve of a band. Its heat determines the accepted part and where the next band lies; the other values are computed after that.
 struct March::Solve {
-  bool is_first;  ///< its right-hand side is that of the source
+  bool is_first;  ///< whether the right-hand side is that of the source
   Band band;
-  std::int64_t size;  ///< of all members' bands
+  std::int64_t size;  ///< number of vertices of the bands of all members
   std::vector<Link> links;
   CsrGraph patch;
   std::optional<HeatOperators> operators;
-  const HeatSystem* system = nullptr;  ///< of these
+  const HeatSystem* system = nullptr;  ///< the system that `operators` owns
   std::optional<AffineHeat> heat;
   HeatExponents exponents;
-  std::vector<Index> near;     ///< places of what is accepted
-  std::vector<Index> numbers;  ///< of these
+  std::vector<Index> near;     ///< places of the accepted vertices
+  std::vector<Index> numbers;  ///< numbers of the accepted vertices
 
   std::vector<Index> accepted() const {
     std::vector<Index> vertices;
@@ -129,7 +129,7 @@ struct March::Solve {
 
 void March::march(const Source* source) {
   OneBlasThread one_thread;
-  std::unique_ptr<Solve> last;  // accepted by its heat; its values are still to be found
+  std::unique_ptr<Solve> last;  // accepted by its heat; its other values are not yet computed
   while (last || source || team_.sum(static_cast<std::int64_t>(front_.size())) > 0) {
     progress_.step("solve", static_cast<double>(accepted_count_) / graph_.size());
     std::unique_ptr<Solve> next;
@@ -139,12 +139,12 @@ void March::march(const Source* source) {
           if (last) solve_values(*last);
         },
         [&] { next = solve_heat(source); });
-    if (std::exchange(last, nullptr) && keep_to_reach()) continue;  // `next` comes from what is no longer in the front
+    if (std::exchange(last, nullptr) && keep_to_reach()) continue;  // `next` started from a front that has changed
     if (!next) {
       front_.clear();
     } else if (!accept_near(*next)) {
       next->system->check();
-      depth_ *= 1.4;  // and stays so: where one band was too thin, the next ones would be
+      depth_ *= 1.4;  // permanently: if one band is too thin, the next ones would be, too
       continue;
     } else if (looks_ahead_) {
       pass_front(next->accepted());
@@ -159,13 +159,13 @@ void March::march(const Source* source) {
   }
 }
 
-/// Finds the next band and its heat, and changes nothing. Null where nothing is ahead.
+/// Computes the next band and its heat, without accepting anything. Null if nothing is ahead.
 std::unique_ptr<March::Solve> March::solve_heat(const Source* source) {
   Band band = find_band(source);
   const std::int64_t size = team_.sum(static_cast<std::int64_t>(band.own));
   if (size == 0) return nullptr;
 
-  // A Dirichlet neighbour behind the front adds tau w to the diagonal and (below) to the right-hand sides.
+  // A Dirichlet neighbor behind the front adds tau w to the diagonal, and (below) tau w times its values to the right-hand sides.
   std::vector<Link> links;
   CsrGraph patch = cut_out(
       graph_, std::span(band.vertices).first(band.own), [&](Index j) { return place(j); },
@@ -203,7 +203,7 @@ std::unique_ptr<March::Solve> March::solve_heat(const Source* source) {
   return solve;
 }
 
-/// Accepts the near part of a band, by its heat. Returns false when the band was too thin for anything to be accepted.
+/// Accepts the near part of a band, determined by its heat. @return false if the band is too thin to accept anything
 bool March::accept_near(Solve& solve) {
   ++statistics_.bands;
   statistics_.solved += solve.size;
@@ -216,7 +216,7 @@ bool March::accept_near(Solve& solve) {
   return true;
 }
 
-/// Finds all but the heat of what was accepted. The next band's heat may be solved for meanwhile.
+/// Computes the other values of the accepted vertices. The next band's heat may be computed at the same time.
 void March::solve_values(Solve& solve) {
   AffineHeat& heat = *solve.heat;
   if (!solve.is_first) {
@@ -231,8 +231,8 @@ void March::solve_values(Solve& solve) {
     take_values(solve.band.vertices[solve.near[k]], solve.numbers[k], solve.near[k], heat, 0, solve.exponents.frame);
 }
 
-/// Places in the band that are farther than the margin from all that was left out, by the heat just found there; none
-/// where they are too few to be worth the band.
+/// Places in the band that are farther than the margin from everything that was left out, measured by the new heat. nullopt if they are too
+/// few compared with the size of the band.
 std::optional<std::vector<Index>> March::near_part(const Band& band, std::int64_t size,
                                                    std::span<const double> lambda) const {
   auto level_of = [&](Index k) { return lambda[k] > 0 ? -std::log(lambda[k]) : INFINITY; };
@@ -262,7 +262,7 @@ std::vector<Index> March::numbers_behind(const Solve& solve) {
   return behind;
 }
 
-/// Dirichlet data: what the accepted neighbours give to the band's right-hand side of A.
+/// Dirichlet terms of the accepted neighbors in the band's right-hand side of A.
 RightHandSide March::heat_behind(const Solve& solve) const {
   RightHandSide in;
   for (const Link& link : solve.links) {
@@ -275,7 +275,7 @@ RightHandSide March::heat_behind(const Solve& solve) const {
   return in;
 }
 
-/// Dirichlet data: what they give to the other right-hand sides.
+/// Adds the Dirichlet terms of the accepted neighbors in the other right-hand sides.
 void March::add_values_behind(const Solve& solve, RightHandSide& in) const {
   const std::size_t width = graph_.transport_layout().width();
   Index place = -1;
@@ -298,7 +298,7 @@ double March::conductance(const Solve& solve, const Link& link) const {
   return solve.operators->scaling() * tau(vertex) * graph_.star(vertex).weights[link.edge];
 }
 
-/// @return the vertex' number
+/// Marks a vertex as accepted and stores its heat. @return the number of the vertex
 Index March::accept(Index vertex, double lambda, std::int32_t exponent) {
   way(vertex).accepted = true;
   accepted_count_ += team_.owns(vertex) ? 1 : 0;
@@ -308,7 +308,7 @@ Index March::accept(Index vertex, double lambda, std::int32_t exponent) {
   return number;
 }
 
-/// Of an accepted vertex.
+/// Stores the other values of an accepted vertex and passes its result to the sink.
 void March::take_values(Index vertex, Index number, Index place, const AffineHeat& heat, std::size_t s,
                         std::int32_t frame_exponent) {
   known_.take_values(number, place, heat, s, frame_exponent);
@@ -325,7 +325,7 @@ void March::take_values(Index vertex, Index number, Index place, const AffineHea
   if (sink_ && team_.owns(vertex)) sink_->accept(vertex, {phi, found_[number][d_], found_[number][d_ + 1]});
 }
 
-/// Adds what was accepted to the front, and takes out of it what has no neighbours ahead.
+/// Adds accepted vertices to the front, and removes vertices without neighbors ahead from it.
 void March::pass_front(std::span<const Index> added) {
   for (Index vertex : added)
     if (team_.owns(vertex)) front_.push_back(vertex);
@@ -339,22 +339,21 @@ void March::pass_front(std::span<const Index> added) {
   for (Index vertex : passed) forget(vertex);
 }
 
-/// Takes out of the front what has no sound values or is out of reach. @return whether there was any
+/// Removes vertices without finite values, or out of reach, from the front. @return whether there were any
 bool March::keep_to_reach() {
   return std::erase_if(front_, [&](Index vertex) { return !is_within_reach(vertex); }) > 0;
 }
 
-/// What all neighbours have taken into account is not asked for again.
+/// Frees the values of a vertex whose neighbors are all accepted. They are not needed again.
 void March::forget(Index vertex) {
   *ways_[numbers_.find(vertex)] = {};
   numbers_.forget(vertex);
 }
 
-/// Of an accepted vertex next to one that is not.
+/// Number of an accepted vertex that is a neighbor of one that is not accepted.
 Index March::known_number(Index vertex) const {
   const Index number = numbers_.find(vertex);
-  if (number < 0)
-    throw InvalidGraph("vertex " + std::to_string(vertex) + " is a neighbour of one that is no neighbour of it");
+  if (number < 0) throw InvalidGraph("an edge to vertex " + std::to_string(vertex) + " has no reverse edge");
   return number;
 }
 
@@ -364,7 +363,7 @@ March::Way& March::way(Index vertex) {
   return *ways_[number];
 }
 
-/// In the band at hand; -1: not in it.
+/// Place of a vertex in the current band; -1: not in it.
 Index March::place(Index vertex) const {
   const Index number = numbers_.find(vertex);
   return number < 0 ? -1 : ways_[number]->place;
@@ -376,7 +375,7 @@ void March::axes(Index vertex, double* out) const {
     for (std::size_t c = 0; c < d_; ++c) out[a * d_ + c] = a == c;
 }
 
-/// A little beyond the radius, since numbers are not monotone from vertex to vertex.
+/// Allows four edge lengths beyond the radius, because distances by heat are not monotone from vertex to vertex.
 bool March::is_within_reach(Index vertex) const {
   const double far = reach_.radius + 4 * scales_.h(vertex) * graph_.length_unit(),
                by_heat = length(coordinates(vertex));
@@ -398,16 +397,16 @@ namespace {
 
 constexpr float far_away = std::numeric_limits<float>::infinity();
 
-/// Heat distances end here: what lies farther ahead has no order among itself, and is still reached.
+/// Upper bound of heat distances. Vertices that are farther ahead are still visited, in any order.
 constexpr double farthest = 1e30;
 
 }  // namespace
 
-/// The vertices ahead of the front within `depth_` of heat distance, own ones in the order of the graph.
+/// The vertices ahead of the front within the heat distance `depth_`; own vertices in the order of the graph.
 March::Band March::find_band(const Source* source) {
   Band band;
   band.vertices = search(source);
-  // The graph's own order keeps neighbours close in memory; that of the distance scatters them all around the front.
+  // In the order of the graph neighbors are close in memory. The order of distance scatters them around the front.
   std::sort(band.vertices.begin(), band.vertices.end());
   band.own = band.vertices.size();
   band.halo = team_.share(band.vertices);
@@ -421,8 +420,8 @@ March::Band March::find_band(const Source* source) {
   return band;
 }
 
-/// Dijkstra's algorithm, the levels on the front being those of the heat that was found there: each member among its own
-/// vertices, again as long as something comes from others. What is found does not depend on who owns what.
+/// Dijkstra's algorithm with the heat distance. It starts from the front, at the levels of the heat there. Each member searches its own
+/// vertices, and repeats this while crossings arrive from others. The result does not depend on the distribution of the vertices.
 std::vector<Index> March::search(const Source* source) {
   Tentative tentative{*this};
   ShortestPaths<float, Tentative> paths(tentative, far_away);
@@ -431,16 +430,16 @@ std::vector<Index> March::search(const Source* source) {
   auto offer = [&](const Ahead& edge, double distance, double tau, double root_tau) {
     const double along = edge_heat_distance(edge.length, edge.weight, tau, root_tau,
                                             [&] { return heat_diagonal(graph_, edge.vertex, tau); });
-    // Negative weights may ask for less than nothing, and for ever.
+    // Negative weights may give negative lengths, with which the search would not end.
     paths.offer(edge.vertex, static_cast<float>(std::min(distance + (along < 0 ? 0 : along), farthest)));
   };
   auto spread = [&](Index from, double distance) {
     const Star star = graph_.star(from);
-    ahead.clear();  // a copy: the star's life may end when another one is asked for
+    ahead.clear();  // a copy: the star is valid until the next call of graph_.star
     for (std::size_t e = 0; e < star.degree(); ++e)
       if (star.weights[e] != 0 && may_be_nearer(star.neighbors[e], distance))
         ahead.push_back({star.neighbors[e], star.weights[e], length(star.log(e))});
-    const double tau = this->tau(from), root_tau = std::sqrt(tau);  // as at the edges' other ends
+    const double tau = this->tau(from), root_tau = std::sqrt(tau);  // equal at both ends of an edge
     for (const Ahead& edge : ahead)
       if (team_.owns(edge.vertex))
         offer(edge, distance, tau, root_tau);
@@ -485,14 +484,14 @@ std::vector<Index> March::search(const Source* source) {
   return found;
 }
 
-/// Whether a vertex is ahead, unless the search knows a way to it that is no longer than this.
+/// Whether a vertex is ahead of the front and the search has no path to it that is as short as `distance`.
 bool March::may_be_nearer(Index vertex, double distance) const {
   const Index number = numbers_.find(vertex);
   if (number < 0) return number != ReachedNumbers::forgotten;
   return !ways_[number]->accepted && !(ways_[number]->tentative <= distance);
 }
 
-/// The places in the band next to vertices that are neither behind the front nor in the band.
+/// Finds the places in the band that have neighbors neither behind the front nor in the band.
 void March::find_edge(Band& band) {
   for (std::size_t k = 0; k < band.own; ++k) {
     const Star star = graph_.star(band.vertices[k]);

@@ -1,5 +1,5 @@
 /// \file
-/// How deep the bands of a march are, in heat distance.
+/// The march: solves for a log map band after band, outwards from the source (docs/concepts/march.md).
 #pragma once
 
 #include <algorithm>
@@ -25,17 +25,17 @@
 
 namespace ahm {
 
-/// Heat distance accepted per band, where the front is as regular as the graph's edges. Measured: deeper bands cost more
-/// fill per vertex, thinner ones solve each vertex more often.
+/// Heat distance that is accepted per band, less if the front is irregular. Chosen by measurement: deeper bands have more fill per vertex,
+/// thinner bands solve each vertex more often.
 inline constexpr double march_step = 32;
 
-/// How far a band goes beyond what is accepted: what lies ahead by x influences what lies behind by exp(-2 x).
+/// Heat distance by which a band extends beyond its accepted part. Values at a distance x ahead have an influence of exp(-2 x).
 inline double march_margin(double accuracy) { return 1.6 - 0.5 * std::log(accuracy); }
 
-/// How much of the decay exp(-x) of heat an edge brings: its length over sqrt(tau), or what the one edge lets through at
-/// the least, where it is far longer than sqrt(tau). An upper bound, for ordering vertices.
+/// Heat distance x of an edge, along which heat decays by exp(-x): its length over sqrt(tau). Heat decays over a single edge by at most the
+/// diagonal entry over tau w, which bounds x for edges much longer than sqrt(tau). An upper bound, used to order vertices.
 /// @param root_tau  sqrt(tau)
-/// @param diagonal  called for the diagonal entry m + tau sum w of A at the edge's end, if it is needed
+/// @param diagonal  returns the diagonal entry m + tau sum w of A at the edge's end; called only if it is needed
 template <class Diagonal>
 double edge_heat_distance(double length, double weight, double tau, double root_tau, const Diagonal& diagonal) {
   const double by_length = length / root_tau;
@@ -50,56 +50,59 @@ inline double heat_diagonal(const TangentGraph& graph, Index vertex, double tau)
   return sum;
 }
 
-/// An edge along which the search for a band comes to a vertex of another member.
+/// An edge along which the search for a band reaches a vertex of another member of the team.
 struct Crossing {
   Index vertex;
   double distance;  ///< heat distance of the near end
   double length, weight;
 };
 
-/// A vertex of another member next to one's own.
+/// A vertex of another member that is a neighbor of an own vertex.
 struct HaloVertex {
   Index vertex;
-  std::int64_t row;  ///< among the band's vertices, those of the first member first
+  std::int64_t row;  ///< number among the vertices of the whole band, in the order of the members
 };
 
-/// A member's part of a band as a graph: its own vertices with their stars, then the halo's, without edges and of mass 1.
+/// A member's part of a band as a graph: its own vertices with their stars, then the halo vertices, without edges and with mass 1.
 struct BandPart {
   const CsrGraph& graph;
   std::span<const HaloVertex> halo;
-  std::vector<double> tau;  ///< of each vertex, the same at both ends of an edge
+  std::vector<double> tau;  ///< diffusion time of each vertex, equal at both ends of an edge
 };
 
-/// All but `owns` and `reach` are called by all members at the same time, as often, in the same order.
+/// The members that compute a march together; each owns a part of the vertices. All members call all functions except `owns` and `reach`,
+/// in the same order.
 class MarchTeam {
  public:
   virtual ~MarchTeam() = default;
 
   virtual bool owns(Index vertex) const = 0;
 
-  /// Of the members' values.
+  /// Minimum over the members.
   virtual double least(double value) = 0;
+  /// Maximum over the members.
   virtual double greatest(double value) = 0;
+  /// Sum over the members.
   virtual std::int64_t sum(std::int64_t value) = 0;
 
-  /// Hands crossings over to the owners of their vertices. @return those that come to one's own
+  /// Sends crossings to the owners of their vertices. @return the crossings that reach own vertices
   virtual std::vector<Crossing> cross(std::span<const Crossing> leaving) = 0;
-  /// Tells of own vertices to all who own a neighbour of them; row i is that of vertices[i]. @return what others tell
+  /// Sends own vertices to all members that own a neighbor of them; vertices[i] has row i. @return the vertices received from others
   virtual std::vector<HaloVertex> share(std::span<const Index> vertices) = 0;
 
-  /// Heat distance from the largest value of a solution to where it is right: shallower bands are accepted where errors are
-  /// relative to the largest value. Infinite where each number is right by itself.
+  /// Heat distance from the largest value of a solution up to which the values are accurate. It bounds the accepted depth if errors are
+  /// relative to the largest value. Infinite if each value has a small relative error.
   virtual double reach() const = 0;
-  /// Solves on own rows; of the halo it fills in what the owners found.
+  /// A system that solves for the rows of all members. A solve returns the own rows and, for halo vertices, the values of their owners.
   /// @throws as `HeatOperators`
   virtual std::unique_ptr<const HeatSystem> system(BandPart part, const HeatOptions& options) = 0;
 };
 
-/// A team of one, which solves by factors in the plane and by conjugate gradients in volumes, where the factors of a band
-/// would fill the memory.
+/// A team with a single member. It solves by factors in the plane, and by conjugate gradients in volumes, where the factors of a band would
+/// need too much memory.
 class Alone final : public MarchTeam {
  public:
-  /// @param heat_first  whether B is wanted later than A, while the next band's A is under way
+  /// @param heat_first  whether to postpone the factorization of B, so that it can run at the same time as the next band's solve with A
   explicit Alone(int dimension, bool heat_first = false) : iterative_(dimension > 2), heat_first_(heat_first) {}
   bool owns(Index) const override { return true; }
   double least(double value) override { return value; }
@@ -107,7 +110,7 @@ class Alone final : public MarchTeam {
   std::int64_t sum(std::int64_t value) override { return value; }
   std::vector<Crossing> cross(std::span<const Crossing>) override { return {}; }
   std::vector<HaloVertex> share(std::span<const Index>) override { return {}; }
-  /// Measured: the cost of a vertex does not grow with a band's depth, but what has decayed further loses digits.
+  /// Chosen by measurement: the cost per vertex does not depend on the depth of a band, but values that have decayed more lose digits.
   double reach() const override { return iterative_ ? 8 : std::numeric_limits<double>::infinity(); }
   std::unique_ptr<const HeatSystem> system(BandPart part, const HeatOptions& options) override {
     return (iterative_    ? iterative_system
@@ -119,31 +122,31 @@ class Alone final : public MarchTeam {
   bool iterative_, heat_first_;
 };
 
-/// Of one member of a team, halo included.
+/// The state of one member of a team between two bands, including its halo.
 struct MarchState {
   MarchStatistics statistics;
-  double depth = 0;                      ///< of bands
-  Offset accepted = 0;                   ///< own vertices
-  std::vector<Index> front;              ///< vertices from which the march goes on, in its order
-  std::vector<Index> vertices;           ///< accepted ones that the front has not passed, ascending
-  std::vector<double> values;            ///< of each of these as many, as `KnownValues` has them, and what was found
-  std::vector<HeatExponents> exponents;  ///< of each of these
-  std::vector<Index> passed;             ///< begin and end of each run of vertices that the front has passed, ascending
+  double depth = 0;                      ///< depth of the bands, heat distance
+  Offset accepted = 0;                   ///< number of accepted own vertices
+  std::vector<Index> front;              ///< vertices from which the march continues, in its order
+  std::vector<Index> vertices;           ///< accepted vertices that the front has not passed, ascending
+  std::vector<double> values;            ///< for each of `vertices` the row of `KnownValues`, then its results
+  std::vector<HeatExponents> exponents;  ///< for each of `vertices`
+  std::vector<Index> passed;  ///< begin and end of each range of vertices that the front has passed, ascending
 };
 
 class March;
 
-/// Keeps a march's state where it is to survive the process.
+/// Saves the state of a march, so that another process can continue it.
 class MarchKeeper {
  public:
   virtual ~MarchKeeper() = default;
-  /// Where to go on; none: from the source.
+  /// The state from which to continue; nullopt: start from the source.
   virtual std::optional<MarchState> begin() = 0;
-  /// Called after each band, by all members of a team: `march.state()` is what `begin` may return.
+  /// Called after each band, by all members of a team. `begin` may return `march.state()` later.
   virtual void end_band(const March& march) = 0;
 };
 
-/// The scales of the component that a vertex is in.
+/// Diffusion time and mean edge length of the component of each vertex.
 class MarchScales {
  public:
   virtual ~MarchScales() = default;
@@ -153,7 +156,7 @@ class MarchScales {
   virtual double h(Index vertex) const = 0;
 };
 
-/// The same of all vertices of a component.
+/// Scales computed from `ComponentScales`.
 class ComponentTimes final : public MarchScales {
  public:
   /// @param scales  must outlive this object
@@ -166,10 +169,10 @@ class ComponentTimes final : public MarchScales {
 
  private:
   const ComponentScales& scales_;
-  std::vector<double> tau_;  ///< per component
+  std::vector<double> tau_;  ///< diffusion time of each component
 };
 
-/// Takes what a march finds of a vertex when it is accepted, each vertex once.
+/// Receives the result at each vertex when it is accepted, once per vertex.
 class MarchSink {
  public:
   virtual ~MarchSink() = default;
@@ -177,59 +180,61 @@ class MarchSink {
   virtual void accept(Index vertex, const HeatRow& found) = 0;
 };
 
-/// Distances that are known before the march.
+/// Distances that are computed before the march.
 class KnownDistances {
  public:
   virtual ~KnownDistances() = default;
-  /// Of a vertex that the march has come to, world units.
+  /// Distance of a vertex that the march has reached, world units.
   virtual double of(Index vertex) const = 0;
 };
 
-/// How far a march goes.
+/// Where a march ends.
 struct MarchReach {
   double radius = INFINITY;  ///< world units
-  /// By which it ends. Null: those of heat, which ways that leave the radius may shorten, so that it ends where the straight
-  /// line in space is longer as well, if the source has a place there.
+  /// The distances that are compared with the radius. Null: the lengths of the vectors by heat. Paths that leave the radius and return may
+  /// shorten these. The march then ends only where the straight line in space is longer than the radius, too, if the position of the
+  /// source is known.
   const KnownDistances* distances = nullptr;
 };
 
-/// What a march looks for.
+/// What a march computes.
 enum class MarchGoal {
-  map,
-  coordinates,  ///< of a map, without what distances and spread need; the radius must be infinite
-  distances,  ///< alone, without frames: coordinates are those of z in the frame of each vertex; the variant must be localized
+  map,          ///< coordinates, distances and spread
+  coordinates,  ///< coordinates only; the radius must be infinite
+  distances,    ///< distances and spread only, without frames: `coordinates` returns z; the variant must be localized
 };
 
+/// Solves for a log map of one source, band after band (docs/concepts/march.md).
 class March {
  public:
   /// @param options  accuracy, ordering, kind of factorization; the graph must have been checked
   /// @param scales   must outlive this object
-  /// @param sink     null: what is found is kept, and told below. Else it is handed over, and forgotten when the front
-  ///                 has passed the vertex, so that memory grows with the front
-  /// @param team     null: alone. Else one of those who march together, which takes a sink; it is told of own vertices
+  /// @param sink     null: the march stores all results, and the accessors below return them. Otherwise `sink` receives each result, and
+  ///                 the march frees it when the front has passed the vertex, so that memory is proportional to the front
+  /// @param team     null: a team with a single member. Otherwise a sink is required; it receives own vertices only
   March(const TangentGraph& graph, const HeatOptions& options, const MarchScales& scales, Variant variant,
         const MarchReach& reach, unsigned threads, Progress progress, MarchSink* sink = nullptr,
         MarchTeam* team = nullptr, MarchGoal goal = MarchGoal::map);
 
   /// Marches from a checked source.
-  /// @param keeper  null: nothing is kept. Else the march, which has a sink, goes on from where it says
+  /// @param keeper  null: the state is not saved. Otherwise the march, which needs a sink, continues from the state of the keeper
   void run(const Source& source, MarchKeeper* keeper = nullptr);
-  /// At the end of a band.
+  /// The state at the end of a band.
   MarchState state() const;
-  /// Marches on from where a solve on the whole graph ended, source number `s` of `heat`.
+  /// Continues a solve on the whole graph beyond its reached vertices. `s` is the number of the source in `heat`.
   void run_on(const AffineHeat& heat, std::size_t s, const Source& source);
 
-  /// phi_i in world units; NaN where `accepted` is false or too little heat arrived.
+  /// phi_i, world units; NaN where `accepted` is false or too little heat arrived.
   std::span<const double> coordinates(Index vertex) const {
     return accepted(vertex) ? std::span(found_[numbers_.find(vertex)], d_) : std::span(nothing_);
   }
-  /// sqrt(q_i / lambda_i) in world units; NaN as `coordinates`.
+  /// sqrt(q_i / lambda_i), world units; NaN where `coordinates` is.
   double root_mean_square(Index vertex) const {
     return accepted(vertex) ? found_[numbers_.find(vertex)][d_] : nothing_[0];
   }
-  /// In world units; NaN as `coordinates`.
+  /// Distance by heat, world units; NaN where `coordinates` is.
   double distance(Index vertex) const { return accepted(vertex) ? found_[numbers_.find(vertex)][d_ + 1] : nothing_[0]; }
-  /// Whether the march came to the vertex.
+  /// Whether the march has reached the vertex.
   bool accepted(Index vertex) const {
     const Index number = numbers_.find(vertex);
     return number >= 0 ? ways_[number]->accepted : number == ReachedNumbers::forgotten;
@@ -237,31 +242,31 @@ class March {
   /// U_i as d x d numbers, row major; the identity where `accepted` is false.
   void axes(Index vertex, double* out) const;
   const MarchStatistics& statistics() const { return statistics_; }
-  /// Memory taken by what is known of vertices.
+  /// Memory of the values of vertices.
   std::size_t bytes() const { return numbers_.bytes() + ways_.bytes() + known_.bytes() + found_.bytes(); }
 
  private:
   struct Band {
-    std::vector<Index> vertices;  ///< own ones, then the halo
+    std::vector<Index> vertices;  ///< own vertices, then the halo
     std::vector<HaloVertex> halo;
-    std::vector<Index> edge;  ///< places of own ones at the far end: with neighbours ahead of the band
-    std::size_t own = 0;      ///< vertices
+    std::vector<Index> edge;  ///< places of own vertices at the far end, which have neighbors ahead of the band
+    std::size_t own = 0;      ///< number of own vertices
   };
-  struct Link {  ///< an edge from a vertex of the band back to an accepted one
+  struct Link {  ///< an edge from a vertex of the band back to an accepted vertex
     Index place;
     std::size_t edge;
-    Index number;  ///< of the accepted one
+    Index number;  ///< number of the accepted vertex
   };
   struct Ahead {  ///< an edge to a vertex that is not accepted yet
     Index vertex;
     double weight, length;
   };
-  struct Way {  ///< where a vertex is on its way
+  struct Way {  ///< the state of a vertex
     bool accepted = false;
-    Index place = -1;            ///< in the band at hand
-    float tentative = INFINITY;  ///< heat distance, less that of the front
+    Index place = -1;            ///< place in the current band; -1: not in it
+    float tentative = INFINITY;  ///< heat distance relative to the front
   };
-  struct Tentative {  ///< the heat distances of a search
+  struct Tentative {  ///< the heat distances of a search, as an array for `ShortestPaths`
     March& march;
     float& operator[](Index vertex) const { return march.way(vertex).tentative; }
   };
@@ -302,25 +307,25 @@ class March {
   MarchSink* sink_;
   MarchGoal goal_;
   MarchKeeper* keeper_ = nullptr;
-  bool looks_ahead_;  ///< to the next band's heat, before the rest of this one is found
+  bool looks_ahead_;  ///< whether the next band's heat is computed at the same time as the other values of this band
   std::unique_ptr<MarchTeam> alone_;
   MarchTeam& team_;
   double margin_, step_;
   MarchReach reach_;
-  std::optional<Vec3> start_;  ///< of straight lines
-  double depth_;               ///< of bands
+  std::optional<Vec3> start_;  ///< position of the source, for straight lines
+  double depth_;               ///< depth of the bands, heat distance
   Progress progress_;
   unsigned threads_;
   std::size_t d_;
 
-  ReachedNumbers numbers_;     ///< of the vertices that were looked at
-  GrowingRows<Way> ways_;      ///< of these
-  KnownValues known_;          ///< of the accepted ones
-  GrowingRows<double> found_;  ///< of the accepted ones: coordinates, root mean square, distance
+  ReachedNumbers numbers_;     ///< numbers of the visited vertices
+  GrowingRows<Way> ways_;      ///< states of the visited vertices
+  KnownValues known_;          ///< solved values of the accepted vertices
+  GrowingRows<double> found_;  ///< results at the accepted vertices: coordinates, root mean square, distance
   std::vector<double> nothing_;
-  std::vector<Index> front_;  ///< own accepted vertices with neighbours that are not
+  std::vector<Index> front_;  ///< accepted own vertices with neighbors that are not accepted
   MarchStatistics statistics_;
-  Offset accepted_count_ = 0;  ///< own ones
+  Offset accepted_count_ = 0;  ///< number of accepted own vertices
 };
 
 }  // namespace ahm

@@ -17,23 +17,24 @@
 namespace ahm {
 namespace {
 
-/// Lengths of an edge seen from both sides differ by no more than this share.
+/// Largest relative difference between the lengths of an edge at its two ends.
 constexpr double same_length = 1e-9;
-/// Angles around a vertex that miss 2 pi by no more are those of a flat or finely sampled surface.
+/// Angle defects up to this size, radians, are those of a flat or finely sampled surface.
 constexpr double least_bend = 0.01;
-/// By less than this share of the longest side do the sides of a triangle without area miss the triangle inequality.
+/// A triangle is degenerate if its longest side exceeds the sum of the others, or falls short of it by up to this share of the
+/// longest side.
 constexpr double degenerate = 1e-9;
-/// Angles around a vertex whose edges are in this proportion to each other, or more, may miss the full turn by it: rounding of
-/// the coordinates turns the short ones.
+/// Rounding of the coordinates rotates short edges. Angle defects below this value times the ratio of the longest to the shortest
+/// edge may be rounding.
 constexpr double least_turn = 1e-12;
 
-/// A number that grows with the angle of v, from -2 to 2.
+/// A number from -2 to 2 that increases with the angle of v.
 double turn(const Vec2& v) {
   const double along = v[0] / (std::abs(v[0]) + std::abs(v[1]));
   return v[1] >= 0 ? 1 - along : along - 1;
 }
 
-/// A sum of angles from 0 to pi by their cosines and sines.
+/// A sum of angles in [0, pi], computed from their cosines and sines.
 class AngleSum {
  public:
   void add(double cosine, double sine) {
@@ -51,11 +52,11 @@ class AngleSum {
   int turns_ = 0;
 };
 
-/// Whether two vertices have a neighbour in common besides the one at hand: as in a square without its diagonal, whose fourth
-/// corner it is, and not across a notch of the boundary.
+/// Whether two vertices have a common neighbor other than `except`. In a square without its diagonal this is the fourth corner; across a
+/// notch of the boundary there is none.
 bool have_common_neighbor(const TangentGraph& graph, Index a, Index b, Index except) {
   if (graph.star(a).degree() > graph.star(b).degree()) std::swap(a, b);
-  static thread_local std::vector<Index> beside_a;  // a star lives until the next one
+  static thread_local std::vector<Index> beside_a;  // a copy: the star is valid until the next call of graph.star
   const auto of_a = graph.star(a).neighbors;
   beside_a.assign(of_a.begin(), of_a.end());
   return std::ranges::any_of(beside_a, [&](Index j) {
@@ -65,7 +66,7 @@ bool have_common_neighbor(const TangentGraph& graph, Index a, Index b, Index exc
   });
 }
 
-/// The third side of the corner between two neighbours of a vertex; NaN where the star is open between them.
+/// Length of the third side of the triangle of a vertex and two successive neighbors; NaN if there is no triangle between them.
 template <class Neighbor>
 double third_side(const TangentGraph& graph, Index vertex, const Neighbor& right, const Neighbor& left) {
   const double open = std::numeric_limits<double>::quiet_NaN();
@@ -74,19 +75,19 @@ double third_side(const TangentGraph& graph, Index vertex, const Neighbor& right
   const double apart = length(Vec2{u[0] - v[0], u[1] - v[1]});
   const bool by_right = graph.star(right.vertex).degree() <= graph.star(left.vertex).degree();
   const Star star = graph.star(by_right ? right.vertex : left.vertex);
-  double third = open;  // of several, that which lies best in the plane
+  double third = open;  // of several edges the one whose length fits best in the tangent plane
   for (std::size_t e = 0; e < star.degree(); ++e) {
     if (star.neighbors[e] != (by_right ? left.vertex : right.vertex)) continue;
     const double side = length(star.log(e));
     if (!(std::abs(side - apart) >= std::abs(third - apart))) third = side;
   }
   if (!std::isnan(third)) return third;
-  // Not joined: a corner of a grid or a square if it is narrow, else a gap.
+  // Without an edge, a narrow angle is the corner of a grid or square, and a wide angle is a gap.
   if (u[0] * v[0] + u[1] * v[1] < -0.5 * right.length * left.length) return open;
   return graph.is_delaunay() && !have_common_neighbor(graph, right.vertex, left.vertex, vertex) ? open : apart;
 }
 
-/// Cosine and sine of the corner between two sides of a triangle, by its lengths [Kah14]; NaN where there is no corner.
+/// Cosine and sine of the angle between two sides of a triangle, from its lengths [Kah14]; NaN if there is no triangle.
 Vec2 corner(double a, double b, double opposite) {
   std::array<double, 3> sides{a, b, opposite};
   std::sort(sides.begin(), sides.end(), std::greater<>());
@@ -154,10 +155,10 @@ double Wavefront::OneRings::curvature_of(std::span<const Corner> corners) {
   return std::isfinite(curvature) ? curvature : 0;
 }
 
-/// Cuts triangles into four. An edge is known by its corner: that of the vertex it starts from, which has the edge to its right.
+/// Cuts each triangle into four. A directed edge is identified by its corner: the one at its start that has the edge on its right side.
 class Wavefront::OneRings::Halving {
  public:
-  /// @param stars  whole ones, which are cut
+  /// @param stars  one-rings to cut
   Halving(const OneRings& stars, std::vector<std::uint8_t>& halved)
       : stars_(stars), halved_(halved), corners_(stars.corners_), twin_(corners_.size(), -1), middle_(corners_.size()) {
     start_.reserve(corners_.size());
@@ -171,7 +172,7 @@ class Wavefront::OneRings::Halving {
       if (halved_[start_[c]] && is_in_doubt(c)) leave_whole(start_[c]);
   }
 
-  /// The stars of the vertices, then those of the midpoints.
+  /// Makes the one-rings of the vertices, then those of the midpoints.
   void cut(std::vector<Offset>& begin, std::vector<Corner>& corners) {
     Index size = stars_.size_;
     for (Offset c = 0; c < static_cast<Offset>(corners_.size()); ++c)
@@ -194,7 +195,7 @@ class Wavefront::OneRings::Halving {
   Offset next(Offset c) const { return c + 1 < stars_.begin_[start_[c] + 1] ? c + 1 : stars_.begin_[start_[c]]; }
   Offset previous(Offset c) const { return c > stars_.begin_[start_[c]] ? c - 1 : stars_.begin_[start_[c] + 1] - 1; }
 
-  /// The same edge from its other end; -1 where that is not plain.
+  /// The same edge from its other end; -1 if it is not unique.
   Offset find_twin(Offset c) const {
     const Corner& edge = corners_[c];
     Offset found = -1;
@@ -207,7 +208,7 @@ class Wavefront::OneRings::Halving {
     return found;
   }
 
-  /// Gives all that is connected with a vertex that mark.
+  /// Marks the connected component of a vertex.
   void mark(Index vertex, std::uint8_t value, std::vector<std::uint8_t>& marks) const {
     std::vector<Index> stack{vertex};
     marks[vertex] = value;
@@ -221,7 +222,7 @@ class Wavefront::OneRings::Halving {
 
   void leave_whole(Index vertex) { mark(vertex, 0, halved_); }
 
-  /// What is flat is exact as it is.
+  /// Does not cut flat components, because distances are exact there.
   void leave_flat_ones_whole() {
     std::vector<std::uint8_t> bent(halved_.size(), 0);
     for (Index i = 0; i < stars_.size_; ++i) {
@@ -235,8 +236,8 @@ class Wavefront::OneRings::Halving {
 
   bool is_open(Offset c) const { return std::isnan(corners_[c].cosine); }
 
-  /// The other two sides of the triangle to the left of an edge, from its start and from its end; none where there is no triangle.
-  /// One of its corners may look open: angles at a vertex are stretched to 2 pi in all.
+  /// The other two sides of the triangle to the left of an edge, at its start and at its end; nullopt if there is no triangle. One of its
+  /// corners may be NaN, because the angles at a vertex are scaled to a sum of 2 pi.
   struct Left {
     Offset start_side, end_side;
   };
@@ -248,7 +249,7 @@ class Wavefront::OneRings::Halving {
     return sides;
   }
 
-  /// Whether there may be a triangle that is not seen as one from all of its vertices: too thin, or of a one-sided surface.
+  /// Whether there may be a triangle that is not found at all of its vertices, because it is too thin or the surface is one-sided.
   bool is_in_doubt(Offset c) const {
     if (left_of(c)) return false;
     const Index j = corners_[c].neighbor, l = corners_[next(c)].neighbor;
@@ -261,7 +262,7 @@ class Wavefront::OneRings::Halving {
     return false;
   }
 
-  /// A corner of halves, of a triangle with those sides.
+  /// A corner between two half sides of a triangle with these sides.
   static Corner half(Index neighbor, double right, double left, double across) {
     const Vec2 angle = corner(right, left, across);
     return {neighbor, false, 0.5 * right, angle[0], angle[1]};
@@ -289,9 +290,9 @@ class Wavefront::OneRings::Halving {
   const OneRings& stars_;
   std::vector<std::uint8_t>& halved_;
   const std::vector<Corner>& corners_;
-  std::vector<Index> start_;   ///< the vertex of a corner
-  std::vector<Offset> twin_;   ///< the corner that has the same edge to its right
-  std::vector<Index> middle_;  ///< the midpoint of an edge
+  std::vector<Index> start_;   ///< vertex of each corner
+  std::vector<Offset> twin_;   ///< corner of the same edge at its other end
+  std::vector<Index> middle_;  ///< midpoint of each edge
 };
 
 Wavefront::OneRings::OneRings(const TangentGraph& graph, std::vector<std::uint8_t> halved, bool all, unsigned threads)

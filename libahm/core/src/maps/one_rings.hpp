@@ -1,5 +1,5 @@
 /// \file
-/// The triangles that a front unfolds across.
+/// The one-rings of vertices and midpoints, across whose triangles a front unfolds.
 #pragma once
 
 #include <cstdint>
@@ -11,40 +11,40 @@
 
 namespace ahm {
 
-/// The corners around vertices, counterclockwise.
+/// The corners around each vertex, counterclockwise.
 ///
-/// Where a triangulation is coarse, each of its triangles is cut into four along the midpoints of its sides, which are points
-/// of the front like vertices: what one point cannot tell of the ways around a corner is an error of an edge length.
+/// In coarse triangulations each triangle is cut into four at the midpoints of its sides. The front visits midpoints like vertices. One
+/// vertex cannot represent the different paths around a corner; without midpoints this causes errors of the order of an edge length.
 class Wavefront::OneRings {
  public:
-  /// @param halved  of every vertex, whether its triangles are cut; one per connected component. Left whole are flat components
-  ///                and those with a triangle in doubt: too thin, one-sided, two equally long edges between the same vertices
-  /// @param all     whether to keep the corners of the other vertices, too. None are kept in other dimensions than 2
+  /// @param halved  for each vertex whether its triangles are cut; equal within a connected component. Flat components stay whole. So do
+  ///                components with an ambiguous triangle: too thin, one-sided, or with two equally long edges between the same vertices
+  /// @param all     whether to store the corners of the other vertices, too. In other dimensions than 2 none are stored
   OneRings(const TangentGraph& graph, std::vector<std::uint8_t> halved, bool all, unsigned threads = 1);
 
-  /// Vertices and, after them, midpoints.
+  /// Number of vertices and midpoints. Midpoints have the numbers after the vertices.
   Index size() const noexcept { return size_; }
-  /// Empty where they are not kept.
+  /// The corners of a point; empty if they are not stored.
   std::span<const Corner> of(Index point) const {
     if (begin_.empty()) return {};
     return std::span(corners_).subspan(static_cast<std::size_t>(begin_[point]),
                                        static_cast<std::size_t>(begin_[point + 1] - begin_[point]));
   }
 
-  /// Whether the corners of a point are kept.
+  /// Whether the corners of a point are stored.
   bool keeps(Index point) const { return !of(point).empty(); }
-  /// Gaussian curvature at a point that is kept; at a midpoint the mean of the ends.
+  /// Gaussian curvature at a point whose corners are stored; at a midpoint the mean of the ends.
   double curvature(Index point) const { return curvatures_[point]; }
-  /// What the angles of a whole star miss of the full turn, for each of its share of the triangles' area; 0 where the star is
-  /// open, or where it may be rounding.
+  /// Gaussian curvature: the angle defect divided by a third of the area of the triangles. 0 at the boundary, and if the defect may be
+  /// rounding.
   static double curvature_of(std::span<const Corner> corners);
 
   /// An edge of a vertex that is cut at its midpoint.
   struct CutEdge {
     Index end, midpoint;
-    double half;  ///< half its length
+    double half;  ///< half of its length
   };
-  /// Those of a vertex, by their ends, without the ones that lead to the same end; none where triangles are whole.
+  /// Finds the cut edges of a vertex, in order of their ends. Parallel edges are left out.
   void find_cut_edges(Index vertex, std::vector<CutEdge>& edges) const;
 
   /// Appends the corners of a vertex; `neighbors` is workspace.
@@ -54,21 +54,23 @@ class Wavefront::OneRings {
  private:
   class Halving;
 
-  /// The neighbours of a vertex, counterclockwise.
+  /// Finds the neighbors of a vertex, counterclockwise.
   static void find_neighbors(const TangentGraph& graph, Index vertex, std::vector<Neighbor>& neighbors);
 
   Index vertices_, size_;
   std::vector<Offset> begin_;
   std::vector<Corner> corners_;
-  std::vector<double> curvatures_;  ///< of the points, where they are kept
+  std::vector<double> curvatures_;  ///< Gaussian curvature at the stored points
 };
 
-/// Components of no more vertices are halved: it makes a front four times the work.
+/// The largest number of vertices of a component whose triangles are cut. Midpoints make a front four times as expensive.
 inline constexpr Index most_halved = 10000;
 
-/// Which vertices are of such components.
+/// For each vertex whether its component has at most `most_halved` vertices.
+/// @param component  component of each vertex
+/// @param sizes      number of vertices of each component
 std::vector<std::uint8_t> halved_vertices(std::span<const Index> component, std::span<const Index> sizes);
-/// None where distances are not unfolded.
+/// The same from the graph. Empty if it is not a Delaunay triangulation.
 std::vector<std::uint8_t> halved_vertices(const TangentGraph& graph);
 
 }  // namespace ahm

@@ -9,7 +9,8 @@
 namespace ahm {
 namespace {
 
-/// Sources that share a patch. Measured: more make the patch larger, fewer factor more often.
+/// Largest number of sources that share a patch. Chosen by measurement: more sources make patches larger, fewer sources need more
+/// factorizations.
 constexpr std::size_t group_size = 48;
 
 }  // namespace
@@ -82,7 +83,7 @@ Patch PatchSolver::cut(std::span<const Source> sources, double limit) {
     vertices.push_back(vertex);
     return true;
   });
-  // Sorted, so that the patch does not depend on the way it was found, and its matrix is nearly the graph's own.
+  // Sorted, so that the patch does not depend on the order of the search, and its matrix has nearly the ordering of the graph's.
   std::sort(vertices.begin(), vertices.end());
   for (std::size_t k = 0; k < vertices.size(); ++k) place_[vertices[k]] = static_cast<Index>(k) + 1;
   CsrGraph cut = cut_out(

@@ -1,5 +1,5 @@
 /// \file
-/// Vertices around others, as often as wanted, at a cost that does not depend on the size of the graph.
+/// Solves for the maps of many sources on patches of a graph. The cost per patch does not depend on the size of the graph.
 #pragma once
 
 #include <algorithm>
@@ -27,7 +27,7 @@
 
 namespace ahm {
 
-/// n values that are zero until written, of which only those written take memory.
+/// n values, initially zero. Memory is used only near the values that were written.
 template <class T>
 class SparseArray {
  public:
@@ -43,7 +43,7 @@ class SparseArray {
   std::unique_ptr<T[], Free> values_;
 };
 
-/// Shortest paths along edges from many starts, to a limit; leaves no trace behind.
+/// Dijkstra's algorithm within a limit, for many searches on the same graph. The cost of a search does not depend on the size of the graph.
 class Ball {
  public:
   explicit Ball(const TangentGraph& graph) : graph_(graph), known_(static_cast<std::size_t>(graph.size())) {}
@@ -72,26 +72,26 @@ class Ball {
   }
 
   const TangentGraph& graph_;
-  SparseArray<double> known_;  ///< 1 + distance, 0: none
+  SparseArray<double> known_;  ///< 1 + distance; 0: no distance
   ShortestPaths<double, SparseArray<double>> paths_{known_, 0.0};
   std::vector<Index> touched_;
 };
 
-/// Groups of sources near each other: the first that has no group yet, and those around it.
-/// @param reach  how far along edges (graph units) a seed looks for others, given its number
+/// Groups nearby sources. Each group consists of the first source without a group, its seed, and sources around it.
+/// @param reach  reach(seed): largest length of the edge path from the seed to the other sources, graph units
 /// @return the numbers of the sources of each group
 std::vector<std::vector<Index>> groups_of(const TangentGraph& graph, std::span<const Source> sources,
                                           const std::function<double(Index seed)>& reach);
 
-/// A patch with its natural boundary.
+/// A subgraph with a natural boundary.
 struct Patch {
-  std::vector<Index> vertices;  ///< of the whole graph, ascending; their places there are the patch's own numbers
-  std::vector<Index> edge;      ///< the patch's numbers of those with neighbours outside, ascending
+  std::vector<Index> vertices;  ///< vertices of the whole graph, ascending; vertices[k] is vertex k of the patch
+  std::vector<Index> edge;      ///< vertices of the patch that have neighbors outside, ascending
   CsrGraph graph;
-  std::vector<Source> sources;  ///< in the patch's numbers
+  std::vector<Source> sources;  ///< sources, in the numbers of the patch
 };
 
-/// A patch, its factors with the diffusion times of the whole graph, and the maps on it.
+/// A patch, its factored operators, and the maps on it. The diffusion times are those of the whole graph.
 struct PatchMaps : Patch {
   PatchMaps(Patch patch, std::vector<double> tau, const DiffusionOptions& options)
       : Patch(std::move(patch)),
@@ -100,17 +100,19 @@ struct PatchMaps : Patch {
   PatchMaps& operator=(const PatchMaps&) = delete;
 
   HeatOperators operators;
-  std::optional<AffineHeat> heat;  ///< solved, without squares
+  std::optional<AffineHeat> heat;  ///< after `AffineHeat::solve`, without second moments
 };
 
 /// Cuts out patches and solves on them, one after the other.
 class PatchSolver {
  public:
-  /// @param options  t_coef and variant count. All three must outlive this object.
+  /// Graph and scales must outlive this object.
+  /// @param options  t_coef and variant are used
   PatchSolver(const TangentGraph& graph, const ComponentScales& scales, const DiffusionOptions& options);
 
-  /// The patch of all vertices within `limit` along edges (graph units) of any source.
+  /// The patch of all vertices with an edge path of at most `limit` (graph units) from a source.
   Patch cut(std::span<const Source> sources, double limit);
+  /// Factors the operators of a patch and solves for the maps of its sources.
   std::unique_ptr<PatchMaps> solve(Patch patch) const;
   /// The largest sqrt(tau) at a vertex of the sources, graph units.
   double sqrt_tau(std::span<const Source> sources) const;
@@ -120,20 +122,22 @@ class PatchSolver {
   const ComponentScales& scales_;
   DiffusionOptions options_;
   Ball ball_;
-  SparseArray<Index> place_;  ///< 1 + place in the patch at hand, 0: outside
+  SparseArray<Index> place_;  ///< 1 + number in the current patch; 0: outside
 };
 
-/// The checks of what is solved for on patches.
+/// Checks the arguments of solves on patches.
 /// @throws InvalidGraph, InvalidArgument
 void check_patches(const TangentGraph& graph, std::span<const Source> sources, const DiffusionOptions& options,
                    double margin);
 
-/// Sources whose patches overlap anyway. @param extent  how far along edges (graph units) each map goes
+/// Groups sources whose patches overlap.
+/// @param extent  length of the longest edge path in each map, graph units
 std::vector<std::vector<Index>> patch_groups(const TangentGraph& graph, const ComponentScales& scales,
                                              std::span<const Source> sources, std::span<const double> extent,
                                              const DiffusionOptions& options, double margin);
 
-/// Calls work(worker, group) for every group, a few at a time by each thread; `make` makes the worker of a thread.
+/// Distributes the groups over threads and calls work(worker, group) for each group.
+/// @param make      make(): a new worker; each thread uses its own
 /// @param progress  stage "solve"
 template <class Make, class Work>
 void share_groups(const std::vector<std::vector<Index>>& groups, unsigned threads, const Progress& progress,

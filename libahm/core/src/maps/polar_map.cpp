@@ -18,7 +18,8 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// Half of what the longest edge of each vertex to a neighbor with coordinates has too much in the map, world units.
+/// Half of the largest excess of an edge's length in the map over its length, for each vertex, over neighbors with coordinates; world
+/// units.
 std::vector<double> jumps(const TangentGraph& graph, std::span<const double> coordinates,
                           std::span<const Status> status) {
   constexpr double rounding = 1e-9;
@@ -40,7 +41,8 @@ std::vector<double> jumps(const TangentGraph& graph, std::span<const double> coo
   return jump;
 }
 
-/// The source's axes, carried along the path to a vertex: what turns the direction of departure to that of arrival, row major.
+/// The source's axes, parallel transported along the path to a vertex: the rotation (or reflection) that maps the direction of departure to
+/// that of arrival; row major.
 std::array<double, 4> carried_axes(const Vec2& departure, const Vec2& arrival, bool mirrored) {
   const double side = mirrored ? -1 : 1;
   // rotation(arrival) diag(1, side) rotation(-departure)
@@ -49,7 +51,7 @@ std::array<double, 4> carried_axes(const Vec2& departure, const Vec2& arrival, b
   return {u[0], -side * u[1], u[1], side * u[0]};
 }
 
-/// One per vertex, row major: the source's axes at its own vertices, elsewhere those of the vertex.
+/// Axes of each vertex, row major: the source's axes at the source's vertices, the identity elsewhere.
 std::vector<double> source_axes(const Source& source, std::size_t n) {
   std::vector<double> axes(4 * n, 0);
   for (std::size_t i = 0; i < n; ++i) axes[4 * i] = axes[4 * i + 3] = 1;
@@ -64,7 +66,7 @@ std::vector<Status> statuses(const Wavefront& front, const Source& source, doubl
   for (Index i = 0; i < graph.size(); ++i)
     if (const double distance = front.distance(Vertex(i)); std::isfinite(distance) && distance <= radius)
       status[i] = Status::ok;
-  if (std::isinf(radius)) return status;  // the front has reached all that is connected
+  if (std::isinf(radius)) return status;  // the front has reached all connected vertices
   const Components components = connected_components(graph);
   const SourceComponents reached(source, components.of_vertex);
   for (Index i = 0; i < graph.size(); ++i)
@@ -79,7 +81,7 @@ void check(const Wavefront& front, const Source& source, const PolarMapOptions& 
   if (!front.has_directions())
     throw InvalidArgument("front_without_directions", "polar_map: the front has no directions",
                           "construct it with `directions`, on a graph of dimension 2");
-  if (source.is_curve()) throw InvalidArgument("polar_map: the source is a curve; polar coordinates start at points");
+  if (source.is_curve()) throw InvalidArgument("polar_map: the source is a curve; polar maps require points");
 }
 
 }  // namespace

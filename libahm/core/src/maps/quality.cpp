@@ -17,12 +17,12 @@
 namespace ahm {
 namespace {
 
-/// A vector that is expected to be off by this share of the distance has the quality 0.5.
+/// The expected relative error at which the quality is 0.5.
 constexpr double doubtful_error = 0.1;
-/// A map that ends at a radius may be compared with a front up to this many radii: the two differ.
+/// The radius of the front divided by the radius of the map. The front goes farther because its distances differ from those of the map.
 constexpr double reach = 1.25;
 
-/// phi from where paths begin: at the point itself, along a curve at its sample nearest to the vertex. n x d.
+/// phi relative to the start of the path: the source point, or for a curve the sample nearest to the vertex. n x d.
 std::vector<double> vectors_from_source(const LogMap& map) {
   std::vector<double> vectors(map.coordinates().begin(), map.coordinates().end());
   const Source& source = map.source();
@@ -39,7 +39,7 @@ std::vector<double> vectors_from_source(const LogMap& map) {
   return vectors;
 }
 
-/// Geodesic polar coordinates of a vertex, and their expected error, world units; NaN where there are none.
+/// Geodesic polar coordinates of a vertex and their expected error, world units; NaN if there is no front with directions.
 struct Polar {
   Vec2 psi;
   double error;
@@ -67,7 +67,7 @@ double error_of_heat(const LogMap& map, const Wavefront* front, Index vertex, st
   const double off = std::abs(length(phi) - d);
   if (front == nullptr || map.dimension() == 2) return off;
   const double unfolded = std::min(front->distance(Vertex(vertex)), reach * map.radius());
-  return std::max(off, std::abs(length(phi) - unfolded) - h);  // right to an edge behind obstacles
+  return std::max(off, std::abs(length(phi) - unfolded) - h);  // behind obstacles the front has errors up to h
 }
 
 void check_map(const TangentGraph& graph, const LogMap& map) {
@@ -75,7 +75,7 @@ void check_map(const TangentGraph& graph, const LogMap& map) {
     throw InvalidArgument("map_quality: the map has " + std::to_string(map.size()) + " vertices, the graph " +
                           std::to_string(graph.size()));
   if (map.source().is_curve() && (map.dimension() != 2 || map.nearest().size() != map.status().size()))
-    throw InvalidArgument("a map from a curve has a quality where its dimension is 2 and it knows the nearest samples");
+    throw InvalidArgument("map_quality: a map from a curve must have dimension 2 and contain the nearest samples");
   if (map.spread().empty())
     throw InvalidArgument("map_without_spread", "the map has no spread", "solve with MapOptions::spread");
 }
@@ -86,7 +86,7 @@ std::vector<double> quality_beside(const TangentGraph& graph, const LogMap& map,
   const ComponentScales scales(graph);
   const std::vector<double> vectors = vectors_from_source(map);
   const auto dimension = static_cast<std::size_t>(map.dimension());
-  // Distances by heat may be below the straight line; unfolded ones hardly are.
+  // Distances by heat may be shorter than the straight line; unfolded distances rarely are.
   const bool may_be_short = map.method() == Method::heat && !graph.is_delaunay();
   const std::optional<Vec3> source = may_be_short ? source_position(graph, map.source()) : std::nullopt;
   detail::for_each_index(quality.size(), threads, [&](std::size_t i) {

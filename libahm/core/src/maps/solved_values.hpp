@@ -1,5 +1,5 @@
 /// \file
-/// What a march and what a global solve know of each vertex, read alike.
+/// A common interface to the results of a march and of a global solve.
 #pragma once
 
 #include <algorithm>
@@ -12,14 +12,14 @@
 
 namespace ahm {
 
-/// What a solve knows of a vertex besides its coordinates; world units.
+/// The result of a solve at a vertex, without its coordinates; world units.
 struct SolvedValue {
   Status status;
   double root_mean_square = 0;  ///< sqrt(q / lambda)
-  double distance = 0;          ///< of heat
+  double distance = 0;          ///< distance by heat
 };
 
-/// What a march found, vertex by vertex.
+/// The results of a march.
 class MarchedValues {
  public:
   MarchedValues(const March& front, double radius) : front_(front), radius_(radius) {}
@@ -37,7 +37,7 @@ class MarchedValues {
   double radius_;
 };
 
-/// What a global solve found for source number s of a block.
+/// The results of a global solve for source number s of a block.
 class GlobalValues {
  public:
   GlobalValues(const AffineHeat& heat, std::size_t s) : heat_(heat), s_(s), frames_(heat.frames(s)) {}

@@ -43,11 +43,11 @@ Source Source::joined(std::span<const Source> points) {
   for (const Source& point : points) {
     const bool one =
         std::all_of(point.places_.begin(), point.places_.end(), [](const Place& p) { return p.point == 0; });
-    if (point.is_curve_ || !one) throw InvalidArgument("sources to be joined: one is not a point");
+    if (point.is_curve_ || !one) throw InvalidArgument("Source::joined: a source is not a point");
     plain.insert(plain.end(), point.vertices_.begin(), point.vertices_.end());
     if (point.dimension_ && point.dimension_ != dimension.value_or(*point.dimension_))
-      throw InvalidArgument("sources to be joined have the dimensions " + std::to_string(*dimension) + " and " +
-                            std::to_string(*point.dimension_));
+      throw InvalidArgument("Source::joined: the sources have different dimensions, " + std::to_string(*dimension) +
+                            " and " + std::to_string(*point.dimension_));
     if (point.dimension_) dimension = point.dimension_;
   }
   if (!dimension) return at_vertices(plain);
@@ -98,7 +98,7 @@ void Source::append(Vertex vertex, double weight, std::span<const double> offset
                     const Place& place) {
   const auto d = static_cast<std::size_t>(dimension_.value_or(0));
   const std::string where = "Source::add, vertex " + std::to_string(vertex.index) + ": ";
-  if (d == 0) throw InvalidArgument(where + "a source made by at_vertex(vertex) takes no further samples");
+  if (d == 0) throw InvalidArgument(where + "a source made by at_vertex(vertex) accepts no more samples");
   if (!(weight >= 0) || !std::isfinite(weight))
     throw InvalidArgument(where + "weight " + detail::number(weight) + " must be finite and >= 0");
   if (offset.size() != d || !all_finite(offset))
@@ -112,7 +112,7 @@ void Source::append(Vertex vertex, double weight, std::span<const double> offset
     const double away = std::hypot(offset[0] - place.position[0], offset[1] - place.position[1]);
     if (!(std::abs(away - place.distance) <= 1e-6 * (away + length(offset))))
       throw InvalidArgument(where + "'offset' is " + detail::number(away) +
-                            " from the position of 'place', whose distance is " + detail::number(place.distance));
+                            " from the position of 'place', but its distance is " + detail::number(place.distance));
   }
   places_.push_back(place);
   vertices_.push_back(vertex);

@@ -20,7 +20,7 @@
 namespace ahm {
 namespace {
 
-/// Scales as the graph tells them.
+/// Scales computed from `TangentGraph::component_edge_length`.
 class GraphScales final : public MarchScales {
  public:
   GraphScales(const TangentGraph& graph, double t_coef) : graph_(graph), t_coef_(t_coef) {}
@@ -32,7 +32,7 @@ class GraphScales final : public MarchScales {
   double t_coef_;
 };
 
-/// Makes rows of what the march finds, which goes as far as the distances that it is told.
+/// Converts the results of the march to rows of the map. Provides the march with unfolded distances, if there are any.
 class Rows final : public MarchSink, public KnownDistances {
  public:
   Rows(const TangentGraph& graph, const Source& source, double radius, const TeamMarch& how, const Progress& progress,
@@ -51,7 +51,7 @@ class Rows final : public MarchSink, public KnownDistances {
     }
   }
 
-  /// Null: they are those of heat.
+  /// Distances computed before the march. Null: the map has the distances by heat.
   const KnownDistances* distances() const { return distances_ ? distances_ : front_ ? this : nullptr; }
   double of(Index vertex) const override { return front_->distance(Vertex(vertex)); }
 
@@ -78,10 +78,10 @@ class Rows final : public MarchSink, public KnownDistances {
  private:
   double radius_;
   MapSink& sink_;
-  std::vector<double> phi_;  ///< empty for distances alone
+  std::vector<double> phi_;  ///< empty if only distances are computed
   const KnownDistances* distances_;
   SourceVertices own_;
-  std::optional<Wavefront> front_;  ///< that knows the distances; none: heat does
+  std::optional<Wavefront> front_;  ///< the front that unfolds distances, if they are unfolded here
 };
 
 HeatOptions heat_options(const StreamOptions& options) {
@@ -103,10 +103,10 @@ void check_streamed_map(const TangentGraph& graph, const Source& source, const H
   quiet.check_graph = false;
   check_heat_options(graph, quiet);
   check_source(source, graph);
-  if (source.is_curve()) throw InvalidArgument("streamed maps begin at points, not along curves");
+  if (source.is_curve()) throw InvalidArgument("the source is a curve; streamed maps require points");
   for (Vertex vertex : source.vertices()) {
     const double h = graph.component_edge_length(vertex.index);
-    if (!(h > 0)) throw InvalidArgument("the graph does not tell the mean edge length of its components");
+    if (!(h > 0)) throw InvalidArgument("the graph has no mean edge lengths; implement `component_edge_length`");
     diffusion_time(options.t_coef, h);
   }
 }

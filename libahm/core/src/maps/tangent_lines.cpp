@@ -20,41 +20,43 @@
 
 namespace ahm {
 
-/// A point of a plane on its way, and how that plane unfolds into the first one.
+/// A point of a tangent plane on a line, and the position of that plane when it is unfolded into the first plane of the line.
 struct Walker {
   Index vertex = 0;
-  Vec2 at{};
-  Vec2 origin{};                               ///< of this plane in the first
-  std::array<Vec2, 2> axes{{{1, 0}, {0, 1}}};  ///< of this plane in the first
+  Vec2 at{};                                   ///< position in the tangent plane of the vertex, graph units
+  Vec2 origin{};                               ///< origin of this plane in the first plane
+  std::array<Vec2, 2> axes{{{1, 0}, {0, 1}}};  ///< axes of this plane in the first plane
 
   Vec2 in_first(const Vec2& v) const { return v[0] * axes[0] + v[1] * axes[1]; }
   Vec2 from_first(const Vec2& v) const { return {dot(v, axes[0]), dot(v, axes[1])}; }
 
-  /// Takes the place, and a direction with it, to the plane of a neighbour.
+  /// Transports the point and a direction to the tangent plane of a neighbor.
   void go_over(const Star& star, std::size_t edge, Vec2& direction);
 };
 
-/// Where a line leaves the cell of its vertex: after which way, and over which edge; none: it does not.
+/// Where a line leaves the cell of its vertex: the distance to the exit, infinite if the line does not leave it, and the edge to the
+/// next cell.
 struct Exit {
   double way = std::numeric_limits<double>::infinity();
   std::size_t edge = 0;
 };
-/// @param direction  unit
-/// @param least      of the ways
+/// Finds the first exit of a line.
+/// @param direction  unit vector
+/// @param least      smallest distance of an exit
 Exit exit_of(const Star& star, const Vec2& at, const Vec2& direction, double least = 0);
 
-/// Whether a point lies beyond the boundary: between two neighbours more than 120 degrees apart, farther away than both.
+/// Whether a point lies beyond the boundary: between two successive neighbors more than 120 degrees apart, farther away than both.
 bool is_beyond(const Star& star, const Vec2& point);
 
-/// What a line has been through.
+/// A line over tangent planes, graph units.
 struct Track {
-  std::vector<Walker> walkers;  ///< where it left cells
+  std::vector<Walker> walkers;  ///< start, exits from cells, end
   double length = 0;
   bool complete = true;
-  Vec2 arrival{};  ///< direction at the last
+  Vec2 arrival{};  ///< direction at the last walker
 };
 
-/// Straight on, as far as `length` or the boundary. @param direction  unit
+/// Traces a straight line up to `length` or the boundary. @param direction  unit vector
 Track follow(const TangentGraph& graph, Walker walker, Vec2 direction, double length);
 
 /// The components of e_ij.
@@ -62,7 +64,7 @@ inline Vec2 log_of(const Star& star, std::size_t edge) { return {star.log(edge)[
 
 namespace {
 
-/// A line that makes no way for so many cells goes round and round a corner where cells meet.
+/// Number of successive cells without progress after which a line is assumed to circle around a corner where cells meet.
 constexpr int most_idle_cells = 20;
 
 }  // namespace
@@ -145,12 +147,12 @@ Track follow(const TangentGraph& graph, Walker walker, Vec2 direction, double le
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-/// Shots that straighten a path.
+/// Largest number of shots to straighten a path.
 constexpr int most_shots = 60;
 
 void check(const TangentGraph& graph, const char* what, const TangentPlanePoint& place) {
   if (graph.dimension() != 2)
-    throw InvalidArgument("lines run over tangent planes, and the graph has dimension " +
+    throw InvalidArgument("lines over tangent planes require dimension 2; the graph has dimension " +
                           std::to_string(graph.dimension()));
   if (place.vertex.index < 0 || place.vertex.index >= graph.size())
     throw InvalidArgument(std::string(what) + ": vertex " + std::to_string(place.vertex.index) + " is outside [0, " +
@@ -172,7 +174,7 @@ TangentLine in_world_units(const Track& track, double length_unit) {
   return line;
 }
 
-/// Where `to` lies in the plane of a vertex, if it is there or beside a neighbour.
+/// Position of `to` in the tangent plane of a vertex; nullopt unless `to` belongs to the vertex or one of its neighbors.
 std::optional<Vec2> seen_from(const TangentGraph& graph, Index vertex, const TangentPlanePoint& to) {
   if (vertex == to.vertex.index) return to.offset;
   const Star star = graph.star(vertex);
@@ -185,7 +187,7 @@ std::optional<Vec2> seen_from(const TangentGraph& graph, Index vertex, const Tan
   return std::nullopt;
 }
 
-/// The way back to where a front came from.
+/// Follows the distances of a front back to the point where it started.
 class Descent {
  public:
   Descent(const TangentGraph& graph, const TangentPlanePoint& to) : graph_(graph), to_(to), front_(graph) {
@@ -196,7 +198,7 @@ class Descent {
     front_.add(source);
   }
 
-  /// Lets the front come to a vertex. @return false where it does not
+  /// Advances the front to a vertex. @return whether it reaches the vertex
   bool reaches(Vertex vertex) {
     for (double radius = 8 * graph_.mean_edge_length() * graph_.length_unit(); !(front_.distance(vertex) < infinity);
          radius *= 2) {
@@ -238,7 +240,8 @@ class Descent {
     double way;
     Vec2 direction;
   };
-  /// Straight to where the front began, to a cell that was not left before; none around corners, and where one is lost in noise.
+  /// One straight step towards the point where the front started. nullopt if it would return to a cell in `left` or leave the
+  /// surface, as at corners and in noise.
   std::optional<Onward> straight_on(const Walker& walker, const std::unordered_set<Index>& left) const {
     const Star star = graph_.star(walker.vertex);
     const Vec2 direction = unit(target(star, walker.vertex) - walker.at);
@@ -249,7 +252,7 @@ class Descent {
     return Onward{exit.edge, exit.way, direction};
   }
 
-  /// The lengths of shortest ways over edges, which lead to `to_` from everywhere.
+  /// Computes the lengths of the shortest edge paths to `to_`, which exist from all connected vertices.
   void find_ways_over_edges() {
     if (!over_edges_.empty()) return;
     over_edges_.assign(static_cast<std::size_t>(graph_.size()), infinity);
@@ -261,7 +264,7 @@ class Descent {
     });
   }
 
-  /// The edge to the neighbour of the least value.
+  /// The edge to the neighbor with the smallest value.
   static std::size_t least(const Star& star, const std::vector<double>& values) {
     std::size_t best = 0;
     for (std::size_t e = 1; e < star.degree(); ++e)
@@ -269,8 +272,9 @@ class Descent {
     return best;
   }
 
-  /// Where the front began, in the plane of a vertex: by the distances of two neighbours that have it between them, the pair that
-  /// puts it nearest to where the vertex's own distance does. The neighbour with the least distance where no pair has it so.
+  /// The point where the front started, in the tangent plane of a vertex. It is computed from the distances of the vertex and of two
+  /// successive neighbors that have the point between them. Of several pairs the one counts whose point fits best the distance of the
+  /// vertex. Without such a pair it is the neighbor with the smallest distance.
   Vec2 target(const Star& star, Index vertex) const {
     const double own = distance(vertex);
     std::size_t nearest = 0;
@@ -300,9 +304,9 @@ class Descent {
   }
 
   const TangentGraph& graph_;
-  TangentPlanePoint to_;  ///< in units of the graph
+  TangentPlanePoint to_;  ///< graph units
   Wavefront front_;
-  std::vector<double> over_edges_;  ///< from `to_`, once it is asked for
+  std::vector<double> over_edges_;  ///< lengths of the shortest edge paths to `to_`; empty until used
 };
 
 double length_of(const std::vector<Vec2>& unfolded) {
@@ -318,8 +322,9 @@ std::vector<Vec2> unfolded(const Track& track) {
   return points;
 }
 
-/// The straight line from the same start to `to`: shot where the track, unfolded, has its end, and then where the last shot was
-/// off the mark. What remains is shared out over the line. None where shots do not come near.
+/// The straight line from the start of a track to `to`, found by shooting. The first shot aims at the end of the unfolded track. Each
+/// following shot is corrected by the miss of the one before. The remaining miss is distributed over the line. nullopt if the shots do not
+/// come near.
 std::optional<Track> straightened(const TangentGraph& graph, const Track& track, const TangentPlanePoint& to) {
   const Walker& start = track.walkers.front();
   Vec2 mark = unfolded(track).back();
@@ -350,7 +355,7 @@ std::optional<Track> straightened(const TangentGraph& graph, const Track& track,
   return best;
 }
 
-/// As found from the start back along distances from the end.
+/// The path that is found from `from` along the distances of a front from `to`.
 TangentLine one_way(const TangentGraph& graph, const TangentPlanePoint& from, const TangentPlanePoint& to) {
   const double world = graph.length_unit();
   const TangentPlanePoint end{to.vertex, 1 / world * to.offset};
@@ -380,8 +385,8 @@ TangentLine one_way(const TangentGraph& graph, const TangentPlanePoint& from, co
 TangentLine trace_line(const TangentGraph& graph, const TangentPlanePoint& from, const Vec2& direction, double length) {
   check(graph, "from", from);
   if (!all_finite(direction) || (direction[0] == 0 && direction[1] == 0))
-    throw InvalidArgument("direction: give a finite vector that is not zero");
-  if (!(length >= 0) || !std::isfinite(length)) throw InvalidArgument("length: give a finite number >= 0");
+    throw InvalidArgument("direction must be a finite vector that is not zero");
+  if (!(length >= 0) || !std::isfinite(length)) throw InvalidArgument("length must be a finite number >= 0");
   const double world = graph.length_unit();
   const Vec2 along = unit(1 / largest(direction) * direction);
   TangentLine line = in_world_units(
@@ -409,10 +414,10 @@ TangentLine shortest_line(const TangentGraph& graph, const TangentPlanePoint& fr
 namespace {
 
 std::size_t main_sample(const Source& source) {
-  if (source.is_curve()) throw InvalidArgument("'source': a curve has no one place");
+  if (source.is_curve()) throw InvalidArgument("'source' is a curve; a point is required");
   if (source.dimension().value_or(2) != 2)
-    throw InvalidArgument("'source': has dimension " + std::to_string(*source.dimension()) + ", not 2");
-  if (source.vertices().empty()) throw InvalidArgument("'source': has no vertices");
+    throw InvalidArgument("'source' has dimension " + std::to_string(*source.dimension()) + ", not 2");
+  if (source.vertices().empty()) throw InvalidArgument("'source' has no vertices");
   return static_cast<std::size_t>(std::max_element(source.weights().begin(), source.weights().end()) -
                                   source.weights().begin());
 }
@@ -445,20 +450,20 @@ std::optional<Vec3> smooth_position(const TangentGraph& graph, const TangentPlan
   if (!own) return std::nullopt;
   const double world = graph.length_unit();
   const Star star = graph.star(place.vertex.index);
-  double nearest = infinity;  // neighbour
+  double nearest = infinity;  // distance of the nearest neighbor
   for (std::size_t e = 0; e < star.degree(); ++e) nearest = std::min(nearest, length(star.log(e)));
   const auto exponent = [&](const Vec2& from_vertex) {
     return -2 * dot(from_vertex, from_vertex) / (nearest * nearest);
   };
   const Vec2 at = 1 / world * place.offset;
-  std::vector<std::pair<TangentPlanePoint, double>> seen{{place, exponent(at)}};  // a frame may need the star's memory
+  std::vector<std::pair<TangentPlanePoint, double>> seen{{place, exponent(at)}};  // `position` may invalidate the star
   for (std::size_t e = 0; e < star.degree(); ++e) {
     const Vec2 from_vertex = at - log_of(star, e);
     Vec2 offset{};
     star.transport(e).apply_inverse(from_vertex.data(), offset.data());
     seen.push_back({{Vertex(star.neighbors[e]), world * offset}, exponent(from_vertex)});
   }
-  // The largest weight is 1: none underflows that counts, however near the nearest neighbour is.
+  // The largest weight is scaled to 1, so that no relevant weight underflows, however near the nearest neighbor is.
   const double largest = std::ranges::max_element(seen, {}, [](const auto& one) { return one.second; })->second;
   Vec3 sum{};
   double weights = 0;

@@ -1,5 +1,5 @@
 /// \file
-/// What an unfolding front finds for a map.
+/// The result of a wavefront, as a map needs it.
 #pragma once
 
 #include <memory>
@@ -13,19 +13,19 @@
 
 namespace ahm {
 
-/// Per vertex, world units; empty: distances are measured by heat.
+/// Distances and directions of each vertex. All are empty if the distances are computed by heat.
 struct Unfolded final : KnownDistances {
-  std::vector<double> distances;
-  std::vector<double> directions;        ///< 2 per vertex; empty where they are not wanted
-  std::vector<double> direction_errors;  ///< of these, radians
-  std::vector<Index> nearest;            ///< sample of a curve
+  std::vector<double> distances;         ///< world units
+  std::vector<double> directions;        ///< 2 per vertex; empty if not requested
+  std::vector<double> direction_errors;  ///< expected errors of the directions, radians
+  std::vector<Index> nearest;            ///< number of the nearest sample of a curve; empty for points
 
   double of(Index vertex) const override { return distances[vertex]; }
 };
 
-/// Of a source whose distances are unfolded (`unfolds`), up to a radius; empty of others.
-/// @param stars       of a Delaunay triangulation
-/// @param directions  whether they are wanted, too; only Delaunay triangulations have them
+/// Runs a front up to a radius if the distances of the source are unfolded (`unfolds`); otherwise returns an empty result.
+/// @param stars       one-rings of the graph; may be null
+/// @param directions  whether to compute directions, too; only on Delaunay triangulations
 /// @throws Cancelled
 Unfolded unfolded_from(const Source& source, const TangentGraph& graph,
                        const std::shared_ptr<const Wavefront::OneRings>& stars, bool directions, double radius,

@@ -1,5 +1,5 @@
 /// \file
-/// From what heat brings to a vertex to its row of a map.
+/// Converts the values of heat at a vertex to its row of the map.
 #pragma once
 
 #include <cmath>
@@ -10,14 +10,14 @@
 
 namespace ahm {
 
-/// What heat says of a vertex, world units.
+/// The result of the heat method at a vertex, world units.
 struct HeatRow {
   std::span<const double> phi;  ///< coordinates
   double root_mean_square;      ///< sqrt(q / lambda)
   double distance;              ///< `heat_distance`
 };
 
-/// What a map says of a vertex besides its coordinates; lengths in world units.
+/// The row of a vertex in a map, without its coordinates; lengths in world units.
 struct VertexRow {
   Status status;  ///< `unreached` where a number is not finite
   double distance, spread;

@@ -1,4 +1,3 @@
-// What a front knows of each vertex.
 #include "ahm/maps/wavefront.hpp"
 
 #include <algorithm>
@@ -22,23 +21,23 @@ namespace ahm {
 namespace {
 
 constexpr Index none = -1;
-/// Less than this is rounding.
+/// Smallest relative improvement of a distance. Smaller ones are rounding.
 constexpr double least_gain = 1e-12;
-/// Ways whose lengths differ by less than this share are equally long, and the one along which the front is less bent counts, so that
-/// rounding does not choose between ways through the same flat faces.
+/// Paths whose lengths differ by less than `same_length` (relative) are equally long. Of these the one with the smaller focusing is
+/// chosen, so that rounding does not choose between paths through the same flat faces.
 constexpr double same_length = 1e-10, same_focusing = 1e-6;
-/// An entry is bettered no more often: where triangles contradict each other they could go on for ever.
+/// Largest number of improvements of an entry. Without it, inconsistent triangles could cause an infinite loop.
 constexpr std::uint8_t most_gains = 40;
-/// Points whose distances a vertex knows, and how many of these are the nearest ones: the samples of a curve are many, and all but
-/// equally near.
+/// Largest number of points for which a vertex stores distances: of points, of samples of a curve, and of the latter the nearest
+/// ones. Curves have many samples at nearly equal distances.
 constexpr std::size_t most_points = 8, most_of_curve = 12, nearest_of_curve = 4;
-/// A line may miss the side by this share of it, and is taken to pass its end. Where edges are no triangulation, as between points that lie
-/// in squares, it may pass between two triangles that bend away from it, and seen from neither leave only edges.
+/// Shares of a side by which a line may miss it and still passes its end: on triangulations and on other graphs. On other graphs, for
+/// example points in squares, a line may pass between two triangles that both miss it; then only the edges would remain.
 constexpr double missed = 1e-9, missed_between = 1e-3;
-/// Stars that are kept until others take their place: those ahead of the front are asked for several times.
+/// Size of the cache of one-rings. Those ahead of the front are used several times.
 constexpr std::size_t most_seen = 2048;
 
-/// Whether a front at this distance, so focused, comes before another one.
+/// Whether a front with this distance and focusing replaces another one.
 bool comes_before(double distance, double focusing, double other, double other_focusing) {
   if (!(std::abs(distance - other) <= same_length * other)) return distance < other;
   const double gain = std::abs(other_focusing) - std::abs(focusing);
@@ -47,7 +46,7 @@ bool comes_before(double distance, double focusing, double other, double other_f
 
 Vec2 unit_vector(const Vec2& v) {
   const double size = length(v);
-  return {v[0] / size, v[1] / size};  // NaN of nothing
+  return {v[0] / size, v[1] / size};  // NaN for the zero vector
 }
 
 }  // namespace
@@ -106,7 +105,7 @@ Index Wavefront::add(const Source& source) {
     for (std::size_t e = 0; e < star.degree(); ++e) {
       const double side = length(star.log(e));
       longest_ = std::max(longest_, side);
-      // The neighbours lie in the tangent plane of the point's only vertex, too, and of one that all but is the point.
+      // If the point has only one vertex, or the vertex is at the point, the neighbors have known positions in its tangent plane, too.
       if (!(beside || away / unit <= least_ray * side)) continue;
       const Vec2 from{star.log(e)[0] - back.data()[0], star.log(e)[1] - back.data()[1]};
       const Vec2 there =
@@ -117,7 +116,7 @@ Index Wavefront::add(const Source& source) {
                        mirrored != (may_reflect && star.transport(e).reflects())});
     }
   }
-  // Also where another point is nearer by less: what lies on this one's side of the border between them comes from there.
+  // Also if another point is nearer by up to 4 edge lengths: from there the front reaches this point's side of the border.
   for (const Given& one : given)
     offer(one.vertex, one.point, one.distance, 4 * longest_, {},
           {.direction = unit_vector(one.offset), .arrival = one.arrival, .mirrored = one.mirrored});
@@ -125,7 +124,8 @@ Index Wavefront::add(const Source& source) {
   return first;
 }
 
-/// A point of a triangle is at the distance of its median from the midpoint of a side whose ends' distances are given.
+/// Offers distances to the midpoints of the edges whose both ends are near a point. The distance from the point to the midpoint is
+/// the length of a median of the triangle of the point and the two ends.
 void Wavefront::offer_midpoints(std::vector<Given>& given) {
   const auto comes_before = [](const Given& a, const Given& b) {
     return std::tie(a.point, a.vertex) < std::tie(b.point, b.vertex);
@@ -173,9 +173,9 @@ void Wavefront::restart(std::span<const Seed> seeds) {
            .variance = static_cast<float>(4 * seeds[k].error * seeds[k].error),
            .mirrored = starts[k].mirrored},
           starts[k].focusing);
-    entries_[first_[vertex]].gains = most_gains;  // nothing replaces it
+    entries_[first_[vertex]].gains = most_gains;  // prevents improvements
   }
-  // Those inside have no one to spread to.
+  // Only seeds with a neighbor that is not a seed need to spread.
   queue_ = {};
   for (const Seed& seed : seeds) {
     const Index vertex = seed.vertex.index;
@@ -191,21 +191,21 @@ void Wavefront::run(double radius, const std::stop_token& stop) {
     if (taken % between_looks == 0 && stop.stop_requested()) throw Cancelled("cancelled during unfold");
     const auto [distance, vertex, point] = queue_.top();
     queue_.pop();
-    if (stars_ && !queue_.empty())  // most likely the next one: of many corners few are in the cache
+    if (stars_ && !queue_.empty())  // prefetch the corners of the vertex that is probably next
       for (const Corner& corner : stars_->of(queue_.top().vertex)) __builtin_prefetch(&corner);
     if (const Entry* entry = find(vertex, point); entry && entry->distance == distance) spread(vertex, point, distance);
   }
 }
 
-/// The entry of a vertex that a further point takes; none where all count for more than it. The nearest count, and of the others,
-/// samples of a curve, those whose numbers are multiples of larger powers of two: neighbours keep the same ones then, some near and
-/// some far apart, whether samples are closer together than vertices or not.
+/// The entry of a full vertex that a new point replaces; none if all entries have priority over the new point. Nearer points have priority.
+/// For curves the nearest samples are kept. Among the others those have priority whose numbers are multiples of larger powers of two. So
+/// neighbors keep the same samples, both close together and far apart, whatever the density of the samples is.
 Index Wavefront::entry_to_take(Index vertex, Index point, double distance) {
   struct Kept {
     double distance;
     Index entry, point;
   };
-  // Of equally far ones that with the largest number goes.
+  // Of equally distant points the one with the largest number is replaced.
   const auto comes_before = [](const Kept& a, const Kept& b) {
     return a.distance != b.distance ? a.distance < b.distance : a.point < b.point;
   };
@@ -223,7 +223,7 @@ Index Wavefront::entry_to_take(Index vertex, Index point, double distance) {
   return std::min_element(others, end, counts_less)->entry;
 }
 
-/// Keeps a distance if it is the least from its point, and that point the nearest or nearly so.
+/// Stores a distance if it is the smallest from its point so far, and at most by `slack` larger than that of the nearest point.
 void Wavefront::offer(Index vertex, Index point, double distance, double slack, std::span<const double> displacement,
                       const Way& way, double focusing) {
   const std::span<const Entry> entries = entries_of(vertex);
@@ -248,7 +248,7 @@ void Wavefront::offer(Index vertex, Index point, double distance, double slack, 
   if (directions_) ways_[own] = way;
   if (d_ != 2)
     std::copy(displacement.begin(), displacement.end(), displacements_.begin() + static_cast<std::ptrdiff_t>(own * d_));
-  // The nearest comes first, of equally near ones one that was added.
+  // The entry of the nearest point comes first; of equally near points the one that was added last.
   const Index first = first_[vertex];
   Index least = first;
   if (own == first)
@@ -259,7 +259,7 @@ void Wavefront::offer(Index vertex, Index point, double distance, double slack, 
   queue_.push({distance, vertex, point});
 }
 
-/// Valid until the corners of another vertex are asked for.
+/// The corners of a vertex. Valid until the next call for another vertex.
 std::span<const Wavefront::Corner> Wavefront::around(Index vertex) {
   if (stars_ && stars_->keeps(vertex)) return stars_->of(vertex);
   if (seen_.empty()) seen_.resize(std::min(most_seen, first_.size()));
@@ -272,7 +272,7 @@ std::span<const Wavefront::Corner> Wavefront::around(Index vertex) {
   return seen.corners;
 }
 
-/// Gaussian curvature; 0 where it does not count.
+/// Gaussian curvature at a vertex or midpoint; 0 if paths do not carry the curvature of the front.
 double Wavefront::curvature(Index vertex) {
   if (!is_curved_) return 0;
   if (stars_->keeps(vertex)) return stars_->curvature(vertex);
@@ -282,12 +282,12 @@ double Wavefront::curvature(Index vertex) {
   return known;
 }
 
-/// Along the edges of a vertex, and across the triangles of its star: from its own distance and that of one neighbour to
-/// the other.
+/// Spreads the front from a vertex: along its edges, and across the triangles of its one-ring. In each triangle the distances of the vertex
+/// and one neighbor give the distance of the other neighbor.
 void Wavefront::spread(Index from, Index point, double distance) {
   if (d_ != 2) return carry(from, point, distance);
   std::span<const Corner> corners = around(from);
-  if (is_curved_ && !stars_->keeps(from)) {  // those of its neighbours may take their place
+  if (is_curved_ && !stars_->keeps(from)) {  // a copy: `curvature` of a neighbor may replace the cached corners
     around_.assign(corners.begin(), corners.end());
     corners = around_;
   }
@@ -361,7 +361,7 @@ void Wavefront::spread(Index from, Index point, double distance) {
     unfold(next, left.length, k, right.length, -1);
   }
   longest_ = std::max(longest_, longest);
-  // What unfolds to a border comes from a few edges beyond.
+  // The fronts of both points continue a few edges beyond the border between them, so that both can unfold up to it.
   for (std::size_t k = 0; k < degree; ++k) {
     if (!known_[k].is_new) continue;
     known_[k].way.mirrored = own.mirrored != corners[k].reflects;
@@ -371,7 +371,7 @@ void Wavefront::spread(Index from, Index point, double distance) {
 
 namespace {
 
-/// The two estimates of a direction lie on both sides of it, so that it is off by half their difference (docs/concepts/accuracy.md).
+/// The two estimates of a direction lie on both sides of it, so the expected error is half of their difference (docs/concepts/accuracy.md).
 constexpr double share_of_difference = 0.5;
 
 }  // namespace
@@ -395,7 +395,7 @@ Vec2 Wavefront::arrival(Vertex vertex) const {
   const Index first = first_[vertex.index];
   if (first < 0 || !directions_) return {NAN, NAN};
   const Way& way = ways_[first];
-  if (way.arrival != Vec2{}) return way.arrival;  // also where it is NaN
+  if (way.arrival != Vec2{}) return way.arrival;  // also if it is NaN
   const Star star = graph_.star(vertex.index);
   std::array<Vec2, 2> ends{};
   for (std::size_t k = 0; k < 2; ++k)
@@ -418,7 +418,7 @@ Index Wavefront::nearest(Vertex vertex) const {
   return first < 0 ? -1 : entries_[first].point;
 }
 
-/// A place for one more entry of a vertex, the last one. Its others may move.
+/// Appends an entry to those of a vertex. The others may move to a larger block. @return number of the new entry
 Index Wavefront::append(Index vertex) {
   Index& first = first_[vertex];
   const std::size_t count = entries_of(vertex).size();
@@ -434,7 +434,7 @@ Index Wavefront::append(Index vertex) {
   return first + static_cast<Index>(count);
 }
 
-/// @return its first entry
+/// Takes an unused block of entries, or makes one. @return number of its first entry
 Index Wavefront::new_row(std::size_t size) {
   const std::size_t kind = std::bit_width(size) - 1;
   if (kind < free_.size() && !free_[kind].empty()) {
@@ -444,14 +444,14 @@ Index Wavefront::new_row(std::size_t size) {
   }
   const std::size_t row = entries_.size();
   if (row + size > static_cast<std::size_t>(std::numeric_limits<Index>::max()))
-    throw ResourceExhausted("front: distances from several points at too many vertices for its numbers");
+    throw ResourceExhausted("Wavefront: too many distances from several points; use fewer source points");
   entries_.resize(row + size);
   if (d_ != 2) displacements_.resize(entries_.size() * d_);
   if (directions_) ways_.resize(entries_.size());
   return static_cast<Index>(row);
 }
 
-/// All of them but the number of entries, which is the row's.
+/// Swaps two entries except `count`, which belongs to the block.
 void Wavefront::swap_entries(Index a, Index b) {
   std::swap(entries_[a], entries_[b]);
   std::swap(entries_[a].count, entries_[b].count);
@@ -461,13 +461,13 @@ void Wavefront::swap_entries(Index a, Index b) {
   std::swap_ranges(of(a), of(a) + static_cast<std::ptrdiff_t>(d_), of(b));
 }
 
-/// The displacement to the point, from vertex to vertex.
+/// Spreads the front from a vertex in other dimensions than 2: transports the displacement from the point along the edges.
 void Wavefront::carry(Index from, Index point, double distance) {
   Scratch here(d_), left(d_), there(d_);
   std::ranges::copy(displacement(*find(from, point)), here.data());
   const std::size_t degree = graph_.star(from).degree();
   for (std::size_t e = 0; e < degree; ++e) {
-    const Star star = graph_.star(from);  // again: that of the neighbour took its place
+    const Star star = graph_.star(from);  // again, because `factor_at` requests another star
     const Index to = star.neighbors[e];
     for (std::size_t a = 0; a < d_; ++a) left.data()[a] = here.data()[a] - star.log(e)[a];
     star.transport(e).apply_inverse(left.data(), there.data());
@@ -477,7 +477,8 @@ void Wavefront::carry(Index from, Index point, double distance) {
   }
 }
 
-/// By how much the way to a vertex is longer than the straight line: from its neighbours that are no farther than `distance`.
+/// The factor u by which the path to a vertex is longer than the straight line, computed from the neighbors up to `distance`
+/// (`eikonal_factor`).
 double Wavefront::factor_at(Index vertex, Index point, std::span<const double> displacement, double distance) {
   const double straight = length(displacement);
   const Star star = graph_.star(vertex);

@@ -60,9 +60,8 @@ struct LocalMapsOf {
   std::vector<Neighbor> neighbors;  ///< vertex or row j of each entry
   std::vector<double> logs;         ///< d per entry, world units
   std::vector<double> distances;    ///< world units
-  std::vector<double>
-      weights;  ///< masses, world units to the power d; NaN if no double can represent it (`world_mass`)
-  std::vector<double> transports;  ///< 2 numbers (cos, sin) or d x d, row major, per entry
+  std::vector<double> weights;      ///< masses, world units to the power d; NaN out of range of double (`world_mass`)
+  std::vector<double> transports;   ///< 2 numbers (cos, sin) or d x d, row major, per entry
 
   Index sources() const noexcept { return static_cast<Index>(indptr.size()) - 1; }
   std::size_t transport_width() const { return TransportLayout{kind, dimension}.width(); }

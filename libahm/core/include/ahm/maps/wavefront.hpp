@@ -1,5 +1,5 @@
 /// \file
-/// Geodesic distance by unfolding: from any number of source points at once, with the nearest of them.
+/// Geodesic distances by unfolding: the distance to the nearest of any number of source points, and the number of that point.
 ///
 /// \code
 /// ahm::Wavefront front(graph);
@@ -25,44 +25,43 @@
 
 namespace ahm {
 
-/// A front that grows from source points over a graph, nearest vertices first [KS98, MR12].
+/// A wavefront that grows from source points over a graph and visits vertices in the order of their distance [KS98, MR12].
 ///
-/// Two neighbours a, b whose distances from a point are known fix where it lies in the plane of a triangle a b c of the
-/// star of a; where the straight line from there to c crosses the side a b, its length is the distance of c, else the way
-/// along the edge a c is. No heat, no operator: O(n log n), about a microsecond a vertex.
+/// The distances of two neighbors a and b from a point determine where the point lies in the plane of a triangle a b c. If the
+/// straight line from there to c crosses the side a b, its length is the distance of c. Otherwise the distance of c is the one along
+/// the edge a c. This takes O(n log n), about a microsecond per vertex, and needs no operators.
 ///
-/// On a curved surface the distances between a and b are not those of a circle: on Delaunay triangulations the curvature of
-/// the front is carried along each way, from the angles around the vertices (maps/focusing.hpp).
+/// On a curved surface the front is not a circle. On Delaunay triangulations each path therefore carries the curvature of the front,
+/// computed from the angle defects of the vertices (docs/concepts/accuracy.md).
 ///
-/// It is exact on flat convex Delaunay triangulations, and of second order elsewhere on Delaunay triangulations, of first
-/// order on other graphs. Coarse and sharp ones (connected components of up to 10,000 vertices, some of them bent) it crosses by
-/// the midpoints of the edges, too, which halves the error; unlike heat it knows the way
-/// around a hole and along both sides of a cut locus. Where a graph's lengths are noisy it takes the shortest of many
-/// uncertain ways and is too short.
+/// The distances are exact on flat convex Delaunay triangulations, of second order on other Delaunay triangulations, and of first
+/// order on other graphs. In components of up to 10,000 vertices that are not flat, the front also visits the midpoints of the edges,
+/// which halves the error. Unlike heat, the front goes around holes and along both sides of a cut locus. If the edge lengths are
+/// noisy, distances are too short, because the front takes the shortest of many uncertain paths.
 ///
-/// In other dimensions than 2 the displacement from the point is carried along the edges. Where edges lie along orthogonal axes
-/// (grids in space) the front solves the eikonal equation beside it [FLZ09] (maps/eikonal.hpp): exact where the straight line is
-/// free, of first order behind obstacles. Elsewhere distances are those of the straight line.
+/// In other dimensions than 2 the edges transport the displacement from the point. If all edges lie along orthogonal axes (grids in space),
+/// the front also solves the factored eikonal equation [FLZ09]: it is exact where the straight line is free, and of first order behind
+/// obstacles. On other graphs the distance is the length of the straight line.
 class Wavefront {
  public:
-  /// The triangles around every vertex, made once for many fronts: about 200 bytes a vertex.
+  /// The one-rings of all vertices, computed once for many fronts: about 200 bytes per vertex.
   class OneRings;
   /// @param threads    0: one per core
-  /// @param midpoints  whether triangles of small components are cut at the midpoints of their sides
+  /// @param midpoints  whether to cut the triangles of small components at the midpoints of their sides
   static std::shared_ptr<const OneRings> one_rings(const TangentGraph& graph, unsigned threads = 1,
                                                    bool midpoints = true);
 
   /// @param graph       must outlive the front
-  /// @param stars       of this graph; none: looked up vertex by vertex
-  /// @param directions  whether to keep `direction`, too (d = 2)
+  /// @param stars       one-rings of this graph; null: the front computes them vertex by vertex
+  /// @param directions  whether to compute `direction` and `arrival`, too (d = 2)
   explicit Wavefront(const TangentGraph& graph, std::shared_ptr<const OneRings> stars = nullptr,
                      bool directions = false);
 
-  /// Adds the points of a source, which get the next numbers, from 0.
-  /// @return the number of the first
+  /// Adds the points of a source. Points are numbered from 0 in the order in which they are added.
+  /// @return the number of the first added point
   /// @throws InvalidArgument when the source does not fit the graph
   Index add(const Source& source);
-  /// How many points were added.
+  /// Number of points added so far.
   Index points() const noexcept { return points_; }
   const TangentGraph& graph() const noexcept { return graph_; }
 
@@ -70,73 +69,73 @@ class Wavefront {
   struct Seed {
     Vertex vertex;
     double distance;   ///< world units
-    Vec2 direction;    ///< as `direction`
-    Vec2 arrival;      ///< as `arrival`; NaN: not known
+    Vec2 direction;    ///< as `Wavefront::direction`
+    Vec2 arrival;      ///< as `Wavefront::arrival`; NaN: unknown
     Index point = 0;   ///< number of the source point
-    double error = 0;  ///< expected, of the direction, radians
+    double error = 0;  ///< expected error of the direction, radians
   };
-  /// Discards what the front has found and starts again from the seeds, whose values stay as they are. A seed keeps the focusing that
-  /// the front has found at its vertex, if any, so run the front over them first. Requires directions.
+  /// Discards all results and starts again from the seeds. The front does not change the values of seeds. Each seed reuses the curvature of
+  /// the front at its vertex from the discarded results, if there is one, so run the front over the seeds first. Requires directions.
   void restart(std::span<const Seed> seeds);
 
-  /// Lets the front go on until all that is nearer than `radius` (world units) has its distance; what lies beyond may have one
-  /// or not, perhaps too long a one. May be called again after `add`: only what is nearer to the new points changes.
+  /// Advances the front until all vertices nearer than `radius` (world units) have their final distance. Vertices beyond may have no
+  /// distance, or one that is too long. May be called again after `add`; then only vertices nearer to the new points change.
   /// @throws Cancelled when a stop is requested
   void run(double radius = std::numeric_limits<double>::infinity(), const std::stop_token& stop = {});
-  /// All that is nearer than this has its distance, world units; infinity at the front's end.
+  /// All distances below this one are final, world units; infinity if the front has visited all vertices it can reach.
   double next() const {
     return queue_.empty() ? std::numeric_limits<double>::infinity()
                           : (queue_.top().distance - longest_) * graph_.length_unit();
   }
 
-  /// The distance to the nearest point, world units; infinity where the front did not come.
+  /// Distance to the nearest point, world units; infinity at vertices that the front has not reached.
   double distance(Vertex vertex) const;
-  /// The direction in which the way leaves its nearest point, in the frame of the source, unit length: so distance times direction are
-  /// geodesic polar coordinates [MR12]. NaN where the front did not come, and at the point itself.
+  /// Unit direction in which the geodesic path leaves the nearest point, in the frame of the source. Distance times direction are geodesic
+  /// polar coordinates [MR12]. NaN at the point itself and at vertices that the front has not reached.
   Vec2 direction(Vertex vertex) const;
   bool has_directions() const noexcept { return directions_; }
-  /// Expected error of the direction, radians: half the root of the sum of squares by which the two estimates differed at each side
-  /// that the path crosses. That of the seed at a seed, NaN where the front did not come.
+  /// Expected error of the direction, radians. At each side that the path crosses there are two estimates of the direction. The error is
+  /// half the root of the sum of their squared differences. At a seed it is `Seed::error`. NaN at vertices that the front has not reached.
   double direction_error(Vertex vertex) const;
-  /// The direction in which the path arrives at a vertex, in the vertex' frame, unit length; NaN at the source and where the front
-  /// did not come. With `direction` it is the parallel transport along the path.
+  /// Unit direction in which the geodesic path arrives at a vertex, in the frame of the vertex. Together with `direction` it determines the
+  /// parallel transport along the path. NaN at the source and at vertices that the front has not reached.
   Vec2 arrival(Vertex vertex) const;
-  /// Whether the frame of the vertex is a mirror image of the source's, carried along the path.
+  /// Whether the frame of the vertex has the opposite orientation of the source's frame, transported along the path.
   bool is_mirrored(Vertex vertex) const;
-  /// The number of the nearest point; -1 where the front did not come. Of equally near ones any.
+  /// Number of the nearest point, any of them if several are equally near; -1 at vertices that the front has not reached.
   Index nearest(Vertex vertex) const;
 
  private:
-  /// A distance from one point. Beside a border between points both sides are known, so that both can unfold across it. Those
-  /// of a vertex lie side by side, the nearest first, in rows of 1, 2, 4, 8 or 16.
+  /// Distance of a vertex from one point. Vertices near the border between two points have entries for both, so that both fronts can unfold
+  /// across it. The entries of a vertex are contiguous, the nearest first, in blocks of 1, 2, 4, 8 or 16.
   struct Entry {
-    double distance = 0, focusing = 0;
+    double distance = 0, focusing = 0;  ///< distance, and m of docs/concepts/accuracy.md
     Index point = -1;
-    std::uint8_t gains = 0;
-    std::uint8_t count = 0;  ///< of the vertex' entries, in the first of them
+    std::uint8_t gains = 0;  ///< how often the distance was improved
+    std::uint8_t count = 0;  ///< number of entries of the vertex; valid in the first of them
   };
-  /// How the way of an entry leaves its point, in the frame of the source.
+  /// The geodesic path of an entry.
   struct Way {
-    Vec2 direction;
-    Vec2 arrival{};                     ///< {0, 0}: that from `last`; NaN: unknown
-    std::array<Index, 2> last{-1, -1};  ///< ends of the side that it crosses last, or one of them twice
-    float share = 0;                    ///< of that side, from the first end to where it crosses
-    float variance = 0;                 ///< of the direction: sum of squares of the differences at the sides crossed
-    bool mirrored = false;              ///< whether the frame of the vertex is turned over against that of the source
+    Vec2 direction;                     ///< direction at the point, in the frame of the source
+    Vec2 arrival{};                     ///< direction at the vertex, in its frame; {0, 0}: from `last`; NaN: unknown
+    std::array<Index, 2> last{-1, -1};  ///< ends of the side that the path crosses last; equal: it follows an edge
+    float share = 0;                    ///< where the path crosses that side: 0 at the first end, 1 at the second
+    float variance = 0;                 ///< sum of squared differences of the direction estimates (`direction_error`)
+    bool mirrored = false;              ///< as `is_mirrored`
   };
-  /// A neighbour of a vertex, and the angle from it to the next one counterclockwise.
+  /// A neighbor of a vertex, and the angle from it to the next neighbor counterclockwise.
   struct Corner {
     Index neighbor;
-    bool reflects;  ///< its frame is turned over against that of the vertex
+    bool reflects;  ///< whether the transport along the edge is a reflection
     double length;
-    double cosine, sine;  ///< NaN where the star is open
+    double cosine, sine;  ///< of the angle; NaN if there is no triangle between the two neighbors
   };
   /// The corners around a vertex.
   struct Seen {
     Index vertex = -1;
     std::vector<Corner> corners;
   };
-  /// A neighbour of a vertex as it lies in the tangent plane.
+  /// A neighbor of a vertex in its tangent plane.
   struct Neighbor {
     Index vertex;
     Vec2 log;
@@ -144,14 +143,13 @@ class Wavefront {
     std::size_t edge;
     bool reflects;
   };
-  /// What is known of a neighbour while a vertex spreads: its distance, that along the edge, how the front comes to it, and
-  /// whether all this was not known before.
+  /// State of a neighbor while the front spreads from a vertex.
   struct Known {
-    double distance, along, focusing;
-    bool is_new;
+    double distance, along, focusing;  ///< shortest distance so far, distance along the edge, m
+    bool is_new;                       ///< whether this vertex has improved the distance
     Way way;
   };
-  /// A neighbour from which the front comes along an axis (maps/eikonal.hpp).
+  /// A neighbor from which the front comes along an axis (`eikonal_factor`).
   struct Upwind {
     double length, cosine, factor;
   };
@@ -177,11 +175,11 @@ class Wavefront {
   Index append(Index vertex);
   Index new_row(std::size_t size);
   void swap_entries(Index a, Index b);
-  /// A vertex whose place beside a point is known, in the frame of the source.
+  /// A vertex near a point, with its position relative to the point from the source.
   struct Given {
     Index vertex, point;
     double distance;
-    Vec2 offset, arrival;
+    Vec2 offset, arrival;  ///< position in the frame of the source; direction at the vertex, in its frame
     bool mirrored;
   };
 
@@ -200,23 +198,23 @@ class Wavefront {
 
   const TangentGraph& graph_;
   std::size_t d_;
-  std::vector<Index> first_;  ///< entry of a vertex or midpoint; -1: none
+  std::vector<Index> first_;  ///< first entry of each vertex or midpoint; -1: none
   std::vector<Entry> entries_;
-  std::array<std::vector<Index>, 4> free_;  ///< rows of 1, 2, 4 and 8 entries that are no longer in use
-  std::vector<double> displacements_;       ///< d per entry, from the vertex to the point in its frame; d = 2: empty
-  double longest_ = 0;  ///< edge of what was passed: no straight way within a radius crosses a side farther beyond it
-  double missed_;       ///< share of a side by which a line may miss it
-  bool is_curved_;      ///< whether the curvature of the surface counts: on Delaunay triangulations
+  std::array<std::vector<Index>, 4> free_;  ///< unused blocks of 1, 2, 4 and 8 entries
+  std::vector<double> displacements_;       ///< d per entry: from the vertex to the point, vertex frame; d = 2: empty
+  double longest_ = 0;  ///< longest edge passed: a path of length L crosses no side with an end beyond L + `longest_`
+  double missed_;       ///< tolerance of `across_side`: share of a side by which a line may miss it
+  bool is_curved_;      ///< whether paths carry the curvature of the front: on Delaunay triangulations
   bool directions_;
   bool of_curve_ = false;           ///< whether samples of a curve are among the points
-  std::vector<double> curvatures_;  ///< of what is not in `stars_`, once one is asked for; NaN: not yet
-  std::vector<Way> ways_;           ///< of the entries, where directions are kept
+  std::vector<double> curvatures_;  ///< curvature of vertices not in `stars_`, empty until used; NaN: not computed yet
+  std::vector<Way> ways_;           ///< paths of the entries; empty without directions
   std::priority_queue<Waiting, std::vector<Waiting>, std::greater<>> queue_;
   std::shared_ptr<const OneRings> stars_;
-  std::vector<Seen> seen_;      ///< stars that `stars_` does not keep, by their vertex modulo the number of these
-  std::vector<Corner> around_;  ///< of the vertex at hand
+  std::vector<Seen> seen_;      ///< cache of one-rings that are not in `stars_`, indexed by the vertex modulo its size
+  std::vector<Corner> around_;  ///< one-ring of the current vertex
   std::vector<Neighbor> neighbors_;
-  std::vector<Known> known_;  ///< of its neighbours
+  std::vector<Known> known_;  ///< states of the neighbors of the current vertex
   std::vector<std::size_t> axis_;
   std::vector<const Entry*> nearest_;
   std::vector<Upwind> upwind_;

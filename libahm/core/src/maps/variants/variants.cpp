@@ -26,7 +26,7 @@ constexpr Entry table[] = {AHM_VARIANTS(AHM_ENTRY)};
 const VariantSystem& system_of(Variant variant) {
   for (const Entry& entry : table)
     if (entry.variant == variant) return entry.system();
-  throw InvalidArgument("variant " + std::to_string(static_cast<int>(variant)) + " is none of ahm::Variant");
+  throw InvalidArgument("variant " + std::to_string(static_cast<int>(variant)) + " is not a value of ahm::Variant");
 }
 
 std::string_view to_string(Variant variant) noexcept {
