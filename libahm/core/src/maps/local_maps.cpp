@@ -223,9 +223,9 @@ class Worker {
   /// systems are solved.
   Outcome measure(const Patch& patch, std::span<const Index> members, double wanted) {
     const std::size_t n = patch.vertices.size();
-    std::shared_ptr<const Wavefront::OneRings> stars;
+    std::shared_ptr<const Wavefront::OneRings> one_rings;
     if (graph_.is_delaunay()) {
-      stars = std::make_shared<const Wavefront::OneRings>(patch.graph, std::vector<std::uint8_t>(), true);
+      one_rings = std::make_shared<const Wavefront::OneRings>(patch.graph, std::vector<std::uint8_t>(), true);
       find_rim(patch);
     }
     distances_.resize(members.size() * n);
@@ -234,7 +234,7 @@ class Worker {
       const std::size_t m = options_.radius > 0 ? members.size() - 1 - k : k;
       if (!unfolds(graph_, patch.sources[m])) continue;
       const double radius = radii_[members[m]];
-      Wavefront front(patch.graph, stars);
+      Wavefront front(patch.graph, one_rings);
       front.add(patch.sources[m]);
       front.run(is_within(patch, sources_[members[m]], wanted) ? radius : std::max(wanted, radius));
       const std::span<double> distance = distances(m, n);

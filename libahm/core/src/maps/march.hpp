@@ -16,12 +16,12 @@
 #include "ahm/graph/tangent_graph.hpp"
 #include "ahm/heat/heat_options.hpp"
 #include "ahm/maps/log_map_solver.hpp"
+#include "ahm/util/small_math.hpp"
 #include "ahm/util/vec.hpp"
 #include "heat/component_scales.hpp"
 #include "heat/heat_system.hpp"
 #include "maps/affine_heat.hpp"
 #include "maps/known_values.hpp"
-#include "maps/vertex_row.hpp"
 
 namespace ahm {
 
@@ -171,6 +171,25 @@ class ComponentTimes final : public MarchScales {
   const ComponentScales& scales_;
   std::vector<double> tau_;  ///< diffusion time of each component
 };
+
+/// The result of the heat method at a vertex, world units.
+struct HeatRow {
+  std::span<const double> phi;  ///< coordinates
+  double root_mean_square;      ///< sqrt(q / lambda)
+  double distance;              ///< `heat_distance`
+};
+
+/// The row of a vertex in a map, without its coordinates; lengths in world units.
+struct VertexRow {
+  Status status;  ///< `unreached` where a number is not finite
+  double distance, spread;
+};
+
+inline VertexRow vertex_row(const HeatRow& found) {
+  const double r = length(found.phi), rms = found.root_mean_square;
+  const bool ok = all_finite(found.phi) && std::isfinite(rms) && std::isfinite(found.distance);
+  return {ok ? Status::ok : Status::unreached, found.distance, rms > r ? std::sqrt(rms - r) * std::sqrt(rms + r) : 0.0};
+}
 
 /// Receives the result at each vertex when it is accepted, once per vertex.
 class MarchSink {

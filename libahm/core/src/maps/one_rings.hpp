@@ -17,6 +17,22 @@ namespace ahm {
 /// vertex cannot represent the different paths around a corner; without midpoints this causes errors of the order of an edge length.
 class Wavefront::OneRings {
  public:
+  /// A neighbor of a vertex, and the angle from it to the next neighbor counterclockwise.
+  struct Corner {
+    Index neighbor;
+    bool reflects;  ///< whether the transport along the edge is a reflection
+    double length;
+    double cosine, sine;  ///< of the angle; NaN if there is no triangle between the two neighbors
+  };
+  /// A neighbor of a vertex in its tangent plane.
+  struct Neighbor {
+    Index vertex;
+    Vec2 log;
+    double length, turn;
+    std::size_t edge;
+    bool reflects;
+  };
+
   /// @param halved  for each vertex whether its triangles are cut; equal within a connected component. Flat components stay whole. So do
   ///                components with an ambiguous triangle: too thin, one-sided, or with two equally long edges between the same vertices
   /// @param all     whether to store the corners of the other vertices, too. In other dimensions than 2 none are stored

@@ -14,8 +14,7 @@
 #include "heat/component_scales.hpp"
 #include "heat/heat_system.hpp"
 #include "maps/affine_heat.hpp"
-#include "maps/solved_values.hpp"
-#include "maps/vertex_row.hpp"
+#include "maps/march.hpp"
 
 namespace ahm {
 namespace {

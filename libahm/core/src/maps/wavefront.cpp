@@ -35,7 +35,7 @@ constexpr std::size_t most_points = 8, most_of_curve = 12, nearest_of_curve = 4;
 /// example points in squares, a line may pass between two triangles that both miss it; then only the edges would remain.
 constexpr double missed = 1e-9, missed_between = 1e-3;
 /// Size of the cache of one-rings. Those ahead of the front are used several times.
-constexpr std::size_t most_seen = 2048;
+constexpr std::size_t ring_cache_size = 2048;
 
 /// Whether a front with this distance and focusing replaces another one.
 bool comes_before(double distance, double focusing, double other, double other_focusing) {
@@ -51,25 +51,149 @@ Vec2 unit_vector(const Vec2& v) {
 
 }  // namespace
 
-Wavefront::Wavefront(const TangentGraph& graph, std::shared_ptr<const OneRings> stars, bool directions)
+struct Wavefront::Impl {
+  using Corner = OneRings::Corner;
+  using Neighbor = OneRings::Neighbor;
+  /// Distance of a vertex from one point. Vertices near the border between two points have entries for both, so that both fronts can unfold
+  /// across it. The entries of a vertex are contiguous, the nearest first, in blocks of 1, 2, 4, 8 or 16.
+  struct Entry {
+    double distance = 0, focusing = 0;  ///< distance, and m of docs/concepts/accuracy.md
+    Index point = -1;
+    std::uint8_t gains = 0;  ///< how often the distance was improved
+    std::uint8_t count = 0;  ///< number of entries of the vertex; valid in the first of them
+  };
+  /// The geodesic path of an entry.
+  struct Path {
+    Vec2 direction;                     ///< direction at the point, in the frame of the source
+    Vec2 arrival{};                     ///< direction at the vertex, in its frame; {0, 0}: from `last`; NaN: unknown
+    std::array<Index, 2> last{-1, -1};  ///< ends of the side that the path crosses last; equal: it follows an edge
+    float share = 0;                    ///< where the path crosses that side: 0 at the first end, 1 at the second
+    float variance = 0;                 ///< sum of squared differences of the direction estimates (`direction_error`)
+    bool mirrored = false;              ///< as `is_mirrored`
+  };
+  /// A one-ring in the cache.
+  struct CachedRing {
+    Index vertex = -1;
+    std::vector<Corner> corners;
+  };
+  /// State of a neighbor while the front spreads from a vertex.
+  struct NeighborState {
+    double distance, along, focusing;  ///< shortest distance so far, distance along the edge, m
+    bool is_new;                       ///< whether this vertex has improved the distance
+    Path path;
+  };
+  /// A neighbor from which the front comes along an axis (`eikonal_factor`).
+  struct Upwind {
+    double length, cosine, factor;
+  };
+  struct QueueEntry {
+    double distance;
+    Index vertex, point;
+    bool operator>(const QueueEntry& other) const {
+      return distance != other.distance ? distance > other.distance
+                                        : (vertex != other.vertex ? vertex > other.vertex : point > other.point);
+    }
+  };
+  /// A vertex near a point, with its position relative to the point from the source.
+  struct NearVertex {
+    Index vertex, point;
+    double distance;
+    Vec2 offset, arrival;  ///< position in the frame of the source; direction at the vertex, in its frame
+    bool mirrored;
+  };
+
+  Impl(const TangentGraph& graph, std::shared_ptr<const OneRings> one_rings, bool directions);
+  Index add(const Source& source);
+  void restart(std::span<const Seed> seeds);
+  void run(double radius, const std::stop_token& stop);
+  double next() const {
+    return queue_.empty() ? std::numeric_limits<double>::infinity()
+                          : (queue_.top().distance - longest_) * graph_.length_unit();
+  }
+  /// The nearest entry of a vertex; null if the front has not reached it.
+  const Entry* nearest(Vertex vertex) const {
+    const Index first = first_[vertex.index];
+    return first < 0 ? nullptr : &entries_[first];
+  }
+  /// The path of the nearest entry; null without directions, too.
+  const Path* path(Vertex vertex) const {
+    const Index first = first_[vertex.index];
+    return first < 0 || !directions_ ? nullptr : &paths_[first];
+  }
+
+  std::span<const Entry> entries_of(Index vertex) const {
+    const Index first = first_[vertex];
+    return first < 0 ? std::span<const Entry>() : std::span(&entries_[first], entries_[first].count);
+  }
+  const Entry* find(Index vertex, Index point) const {
+    for (const Entry& entry : entries_of(vertex))
+      if (entry.point == point) return &entry;
+    return nullptr;
+  }
+  Index number(const Entry& entry) const { return static_cast<Index>(&entry - entries_.data()); }
+  Index append(Index vertex);
+  Index new_row(std::size_t size);
+  void swap_entries(Index a, Index b);
+  void offer_midpoints(std::vector<NearVertex>& given);
+  void offer(Index vertex, Index point, double distance, double slack, std::span<const double> displacement,
+             const Path& path, double focusing = 0);
+  Index entry_to_replace(Index vertex, Index point, double distance);
+  void spread(Index from, Index point, double distance);
+  void carry(Index from, Index point, double distance);
+  double factor_at(Index vertex, Index point, std::span<const double> displacement, double distance);
+  std::span<const double> displacement(const Entry& entry) const {
+    return std::span(displacements_).subspan(number(entry) * d_, d_);
+  }
+  std::span<const Corner> one_ring(Index vertex);
+  double curvature(Index vertex);
+
+  const TangentGraph& graph_;
+  std::size_t d_;
+  std::vector<Index> first_;  ///< first entry of each vertex or midpoint; -1: none
+  std::vector<Entry> entries_;
+  std::array<std::vector<Index>, 4> free_;  ///< unused blocks of 1, 2, 4 and 8 entries
+  std::vector<double> displacements_;       ///< d per entry: from the vertex to the point, vertex frame; d = 2: empty
+  double longest_ = 0;  ///< longest edge passed: a path of length L crosses no side with an end beyond L + `longest_`
+  double missed_;       ///< tolerance of `across_side`: share of a side by which a line may miss it
+  bool is_curved_;      ///< whether paths carry the curvature of the front: on Delaunay triangulations
+  bool directions_;
+  bool of_curve_ = false;  ///< whether samples of a curve are among the points
+  std::vector<double>
+      curvatures_;           ///< curvature of vertices not in `one_rings_`, empty until used; NaN: not computed yet
+  std::vector<Path> paths_;  ///< paths of the entries; empty without directions
+  std::priority_queue<QueueEntry, std::vector<QueueEntry>, std::greater<>> queue_;
+  std::shared_ptr<const OneRings> one_rings_;
+  std::vector<CachedRing>
+      ring_cache_;  ///< cache of one-rings that are not in `one_rings_`, indexed by the vertex modulo its size
+  std::vector<Corner> ring_;  ///< one-ring of the current vertex
+  std::vector<Neighbor> neighbors_;
+  std::vector<NeighborState> states_;  ///< states of the neighbors of the current vertex
+  std::vector<std::size_t> axis_;
+  std::vector<const Entry*> nearest_;
+  std::vector<Upwind> upwind_;
+  Index points_ = 0;
+};
+
+Wavefront::Impl::Impl(const TangentGraph& graph, std::shared_ptr<const OneRings> one_rings, bool directions)
     : graph_(graph),
       d_(static_cast<std::size_t>(graph.dimension())),
       missed_(graph.is_delaunay() ? missed : missed_between),
       is_curved_(graph.is_delaunay() && d_ == 2),
       directions_(directions && d_ == 2),
-      stars_(stars || !graph.is_delaunay() ? std::move(stars)
-                                           : std::make_shared<const OneRings>(graph, halved_vertices(graph), false)) {
-  first_.assign(static_cast<std::size_t>(stars_ ? stars_->size() : graph.size()), none);
+      one_rings_(one_rings || !graph.is_delaunay()
+                     ? std::move(one_rings)
+                     : std::make_shared<const OneRings>(graph, halved_vertices(graph), false)) {
+  first_.assign(static_cast<std::size_t>(one_rings_ ? one_rings_->size() : graph.size()), none);
   entries_.reserve(first_.size());
 }
 
-Index Wavefront::add(const Source& source) {
+Index Wavefront::Impl::add(const Source& source) {
   check_source(source, graph_);
   const double unit = graph_.length_unit();
   const Index first = points_;
   of_curve_ = of_curve_ || source.is_curve();
   const bool may_reflect = graph_.transport_layout().may_reflect();
-  std::vector<Given> given;
+  std::vector<NearVertex> given;
   Scratch offset(d_), back(d_);
   for (std::size_t k = 0; k < source.vertices().size(); ++k) {
     if (!(source.weights()[k] > 0)) continue;
@@ -117,26 +241,26 @@ Index Wavefront::add(const Source& source) {
     }
   }
   // Also if another point is nearer by up to 4 edge lengths: from there the front reaches this point's side of the border.
-  for (const Given& one : given)
+  for (const NearVertex& one : given)
     offer(one.vertex, one.point, one.distance, 4 * longest_, {},
           {.direction = unit_vector(one.offset), .arrival = one.arrival, .mirrored = one.mirrored});
-  if (stars_) offer_midpoints(given);
+  if (one_rings_) offer_midpoints(given);
   return first;
 }
 
 /// Offers distances to the midpoints of the edges whose both ends are near a point. The distance from the point to the midpoint is
 /// the length of a median of the triangle of the point and the two ends.
-void Wavefront::offer_midpoints(std::vector<Given>& given) {
-  const auto comes_before = [](const Given& a, const Given& b) {
+void Wavefront::Impl::offer_midpoints(std::vector<NearVertex>& given) {
+  const auto comes_before = [](const NearVertex& a, const NearVertex& b) {
     return std::tie(a.point, a.vertex) < std::tie(b.point, b.vertex);
   };
   std::sort(given.begin(), given.end(), comes_before);
   std::vector<OneRings::CutEdge> edges;
-  for (const Given& one : given) {
-    stars_->find_cut_edges(one.vertex, edges);
+  for (const NearVertex& one : given) {
+    one_rings_->find_cut_edges(one.vertex, edges);
     for (const auto& edge : edges) {
       if (edge.end <= one.vertex) continue;
-      Given end = one;
+      NearVertex end = one;
       end.vertex = edge.end;
       const auto [first, last] = std::equal_range(given.begin(), given.end(), end, comes_before);
       for (auto other = first; other != last; ++other) {
@@ -150,7 +274,7 @@ void Wavefront::offer_midpoints(std::vector<Given>& given) {
   }
 }
 
-void Wavefront::restart(std::span<const Seed> seeds) {
+void Wavefront::Impl::restart(std::span<const Seed> seeds) {
   struct Start {
     double focusing = 0;
     bool mirrored = false;
@@ -159,11 +283,11 @@ void Wavefront::restart(std::span<const Seed> seeds) {
   starts.reserve(seeds.size());
   for (const Seed& seed : seeds) {
     const Entry* const found = find(seed.vertex.index, seed.point);
-    starts.push_back(found ? Start{found->focusing, ways_[number(*found)].mirrored} : Start{});
+    starts.push_back(found ? Start{found->focusing, paths_[number(*found)].mirrored} : Start{});
   }
   std::ranges::fill(first_, none);
   entries_.clear();
-  ways_.clear();
+  paths_.clear();
   for (std::vector<Index>& rows : free_) rows.clear();
   for (std::size_t k = 0; k < seeds.size(); ++k) {
     const Index vertex = seeds[k].vertex.index;
@@ -180,19 +304,19 @@ void Wavefront::restart(std::span<const Seed> seeds) {
   for (const Seed& seed : seeds) {
     const Index vertex = seed.vertex.index;
     const auto is_free = [&](const Corner& corner) { return first_[corner.neighbor] == none; };
-    if (std::ranges::any_of(around(vertex), is_free))
+    if (std::ranges::any_of(one_ring(vertex), is_free))
       queue_.push({entries_[first_[vertex]].distance, vertex, seed.point});
   }
 }
 
-void Wavefront::run(double radius, const std::stop_token& stop) {
+void Wavefront::Impl::run(double radius, const std::stop_token& stop) {
   constexpr std::uint32_t between_looks = 4096;
   for (std::uint32_t taken = 0; !queue_.empty() && next() <= radius; ++taken) {
     if (taken % between_looks == 0 && stop.stop_requested()) throw Cancelled("cancelled during unfold");
     const auto [distance, vertex, point] = queue_.top();
     queue_.pop();
-    if (stars_ && !queue_.empty())  // prefetch the corners of the vertex that is probably next
-      for (const Corner& corner : stars_->of(queue_.top().vertex)) __builtin_prefetch(&corner);
+    if (one_rings_ && !queue_.empty())  // prefetch the corners of the vertex that is probably next
+      for (const Corner& corner : one_rings_->of(queue_.top().vertex)) __builtin_prefetch(&corner);
     if (const Entry* entry = find(vertex, point); entry && entry->distance == distance) spread(vertex, point, distance);
   }
 }
@@ -200,7 +324,7 @@ void Wavefront::run(double radius, const std::stop_token& stop) {
 /// The entry of a full vertex that a new point replaces; none if all entries have priority over the new point. Nearer points have priority.
 /// For curves the nearest samples are kept. Among the others those have priority whose numbers are multiples of larger powers of two. So
 /// neighbors keep the same samples, both close together and far apart, whatever the density of the samples is.
-Index Wavefront::entry_to_take(Index vertex, Index point, double distance) {
+Index Wavefront::Impl::entry_to_replace(Index vertex, Index point, double distance) {
   struct Kept {
     double distance;
     Index entry, point;
@@ -224,8 +348,8 @@ Index Wavefront::entry_to_take(Index vertex, Index point, double distance) {
 }
 
 /// Stores a distance if it is the smallest from its point so far, and at most by `slack` larger than that of the nearest point.
-void Wavefront::offer(Index vertex, Index point, double distance, double slack, std::span<const double> displacement,
-                      const Way& way, double focusing) {
+void Wavefront::Impl::offer(Index vertex, Index point, double distance, double slack,
+                            std::span<const double> displacement, const Path& path, double focusing) {
   const std::span<const Entry> entries = entries_of(vertex);
   const double nearest = entries.empty() ? std::numeric_limits<double>::infinity() : entries.front().distance;
   if (!(distance <= nearest + slack)) return;
@@ -237,7 +361,7 @@ void Wavefront::offer(Index vertex, Index point, double distance, double slack, 
     own = number(*known);
   } else {
     is_added = entries.size() < (of_curve_ ? most_of_curve : most_points);
-    own = is_added ? append(vertex) : entry_to_take(vertex, point, distance);
+    own = is_added ? append(vertex) : entry_to_replace(vertex, point, distance);
     if (own == none) return;
     entries_[own].point = point;
     entries_[own].gains = 0;
@@ -245,7 +369,7 @@ void Wavefront::offer(Index vertex, Index point, double distance, double slack, 
   ++entries_[own].gains;
   entries_[own].distance = distance;
   entries_[own].focusing = focusing;
-  if (directions_) ways_[own] = way;
+  if (directions_) paths_[own] = path;
   if (d_ != 2)
     std::copy(displacement.begin(), displacement.end(), displacements_.begin() + static_cast<std::ptrdiff_t>(own * d_));
   // The entry of the nearest point comes first; of equally near points the one that was added last.
@@ -260,10 +384,10 @@ void Wavefront::offer(Index vertex, Index point, double distance, double slack, 
 }
 
 /// The corners of a vertex. Valid until the next call for another vertex.
-std::span<const Wavefront::Corner> Wavefront::around(Index vertex) {
-  if (stars_ && stars_->keeps(vertex)) return stars_->of(vertex);
-  if (seen_.empty()) seen_.resize(std::min(most_seen, first_.size()));
-  Seen& seen = seen_[static_cast<std::size_t>(vertex) % seen_.size()];
+std::span<const Wavefront::OneRings::Corner> Wavefront::Impl::one_ring(Index vertex) {
+  if (one_rings_ && one_rings_->keeps(vertex)) return one_rings_->of(vertex);
+  if (ring_cache_.empty()) ring_cache_.resize(std::min(ring_cache_size, first_.size()));
+  CachedRing& seen = ring_cache_[static_cast<std::size_t>(vertex) % ring_cache_.size()];
   if (seen.vertex != vertex) {
     seen.vertex = vertex;
     seen.corners.clear();
@@ -273,30 +397,30 @@ std::span<const Wavefront::Corner> Wavefront::around(Index vertex) {
 }
 
 /// Gaussian curvature at a vertex or midpoint; 0 if paths do not carry the curvature of the front.
-double Wavefront::curvature(Index vertex) {
+double Wavefront::Impl::curvature(Index vertex) {
   if (!is_curved_) return 0;
-  if (stars_->keeps(vertex)) return stars_->curvature(vertex);
+  if (one_rings_->keeps(vertex)) return one_rings_->curvature(vertex);
   if (curvatures_.empty()) curvatures_.assign(static_cast<std::size_t>(graph_.size()), NAN);
   double& known = curvatures_[vertex];
-  if (std::isnan(known)) known = OneRings::curvature_of(around(vertex));
+  if (std::isnan(known)) known = OneRings::curvature_of(one_ring(vertex));
   return known;
 }
 
 /// Spreads the front from a vertex: along its edges, and across the triangles of its one-ring. In each triangle the distances of the vertex
 /// and one neighbor give the distance of the other neighbor.
-void Wavefront::spread(Index from, Index point, double distance) {
+void Wavefront::Impl::spread(Index from, Index point, double distance) {
   if (d_ != 2) return carry(from, point, distance);
-  std::span<const Corner> corners = around(from);
-  if (is_curved_ && !stars_->keeps(from)) {  // a copy: `curvature` of a neighbor may replace the cached corners
-    around_.assign(corners.begin(), corners.end());
-    corners = around_;
+  std::span<const Corner> corners = one_ring(from);
+  if (is_curved_ && !one_rings_->keeps(from)) {  // a copy: `curvature` of a neighbor may replace the cached corners
+    ring_.assign(corners.begin(), corners.end());
+    corners = ring_;
   }
   const std::size_t degree = corners.size();
-  known_.resize(degree);
+  states_.resize(degree);
   double longest = 0;
-  const auto way_of = [&](const Entry* entry) { return ways_[number(*entry)]; };
+  const auto path_of = [&](const Entry* entry) { return paths_[number(*entry)]; };
   const Entry* const here = find(from, point);
-  const Way own = directions_ ? way_of(here) : Way{};
+  const Path own = directions_ ? path_of(here) : Path{};
   const double focusing = here->focusing, curvature_here = distance > 0 ? curvature(from) : 0;
   const auto focusing_along = [&](const Corner& edge, double along) {
     if (!is_curved_) return 0.0;
@@ -306,12 +430,13 @@ void Wavefront::spread(Index from, Index point, double distance) {
     const Entry* entry = find(corners[k].neighbor, point);
     const double before = entry ? entry->distance : std::numeric_limits<double>::infinity();
     const double along = distance + corners[k].length;
-    Known& known = known_[k];
+    NeighborState& known = states_[k];
     known.is_new = !(before <= along);
     known.distance = known.is_new ? along : before;
     known.along = along;
     known.focusing = known.is_new ? focusing_along(corners[k], along) : entry->focusing;
-    if (directions_) known.way = known.is_new ? Way{own.direction, {}, {from, from}, 0, own.variance} : way_of(entry);
+    if (directions_)
+      known.path = known.is_new ? Path{own.direction, {}, {from, from}, 0, own.variance} : path_of(entry);
     longest = std::max(longest, corners[k].length);
   }
   for (std::size_t k = 0; k < degree; ++k) {
@@ -320,8 +445,8 @@ void Wavefront::spread(Index from, Index point, double distance) {
     if (std::isnan(right.cosine)) continue;
     const auto unfold = [&](std::size_t base, double base_length, std::size_t target, double target_length,
                             double side) {
-      const Known& other = known_[base];
-      Known& found = known_[target];
+      const NeighborState& other = states_[base];
+      NeighborState& found = states_[target];
       if (!(other.distance < other.along)) return;
       const double most = found.distance + (!is_curved_ ? 0 : max_curvature_correction * base_length);
       const double limit = most * most;
@@ -349,13 +474,13 @@ void Wavefront::spread(Index from, Index point, double distance) {
       if (!directions_) return;
       const Vec2 towards = crossing == across.share ? Vec2{cx, cy} : Vec2{crossing * base_length, 0};
       const auto [direction, difference] = direction_across(across, crossing, towards, base_length, own.direction,
-                                                            other.way.direction, own.mirrored ? -side : side);
-      found.way.direction = direction;
-      found.way.variance =
-          static_cast<float>((1 - crossing) * own.variance + crossing * other.way.variance + difference * difference);
-      found.way.arrival = {};
-      found.way.last = {from, corners[base].neighbor};
-      found.way.share = static_cast<float>(crossing);
+                                                            other.path.direction, own.mirrored ? -side : side);
+      found.path.direction = direction;
+      found.path.variance =
+          static_cast<float>((1 - crossing) * own.variance + crossing * other.path.variance + difference * difference);
+      found.path.arrival = {};
+      found.path.last = {from, corners[base].neighbor};
+      found.path.share = static_cast<float>(crossing);
     };
     unfold(k, right.length, next, left.length, 1);
     unfold(next, left.length, k, right.length, -1);
@@ -363,63 +488,14 @@ void Wavefront::spread(Index from, Index point, double distance) {
   longest_ = std::max(longest_, longest);
   // The fronts of both points continue a few edges beyond the border between them, so that both can unfold up to it.
   for (std::size_t k = 0; k < degree; ++k) {
-    if (!known_[k].is_new) continue;
-    known_[k].way.mirrored = own.mirrored != corners[k].reflects;
-    offer(corners[k].neighbor, point, known_[k].distance, 4 * longest, {}, known_[k].way, known_[k].focusing);
+    if (!states_[k].is_new) continue;
+    states_[k].path.mirrored = own.mirrored != corners[k].reflects;
+    offer(corners[k].neighbor, point, states_[k].distance, 4 * longest, {}, states_[k].path, states_[k].focusing);
   }
 }
 
-namespace {
-
-/// The two estimates of a direction lie on both sides of it, so the expected error is half of their difference (docs/concepts/accuracy.md).
-constexpr double share_of_difference = 0.5;
-
-}  // namespace
-
-double Wavefront::distance(Vertex vertex) const {
-  const Index first = first_[vertex.index];
-  return first < 0 ? std::numeric_limits<double>::infinity() : entries_[first].distance * graph_.length_unit();
-}
-
-Vec2 Wavefront::direction(Vertex vertex) const {
-  const Index first = first_[vertex.index];
-  return first < 0 || !directions_ ? Vec2{NAN, NAN} : ways_[first].direction;
-}
-
-double Wavefront::direction_error(Vertex vertex) const {
-  const Index first = first_[vertex.index];
-  return first < 0 || !directions_ ? NAN : share_of_difference * std::sqrt(ways_[first].variance);
-}
-
-Vec2 Wavefront::arrival(Vertex vertex) const {
-  const Index first = first_[vertex.index];
-  if (first < 0 || !directions_) return {NAN, NAN};
-  const Way& way = ways_[first];
-  if (way.arrival != Vec2{}) return way.arrival;  // also if it is NaN
-  const Star star = graph_.star(vertex.index);
-  std::array<Vec2, 2> ends{};
-  for (std::size_t k = 0; k < 2; ++k)
-    if (const auto end = std::ranges::find(star.neighbors, way.last[k]); end != star.neighbors.end()) {
-      const std::span<const double> log = star.log(static_cast<std::size_t>(end - star.neighbors.begin()));
-      ends[k] = {log[0], log[1]};
-    }
-  const Vec2 crossing = (1.0 - way.share) * ends[0] + static_cast<double>(way.share) * ends[1];
-  const double away = length(crossing);
-  return (-1 / away) * crossing;
-}
-
-bool Wavefront::is_mirrored(Vertex vertex) const {
-  const Index first = first_[vertex.index];
-  return first >= 0 && directions_ && ways_[first].mirrored;
-}
-
-Index Wavefront::nearest(Vertex vertex) const {
-  const Index first = first_[vertex.index];
-  return first < 0 ? -1 : entries_[first].point;
-}
-
 /// Appends an entry to those of a vertex. The others may move to a larger block. @return number of the new entry
-Index Wavefront::append(Index vertex) {
+Index Wavefront::Impl::append(Index vertex) {
   Index& first = first_[vertex];
   const std::size_t count = entries_of(vertex).size();
   if (count == 0) {
@@ -435,7 +511,7 @@ Index Wavefront::append(Index vertex) {
 }
 
 /// Takes an unused block of entries, or makes one. @return number of its first entry
-Index Wavefront::new_row(std::size_t size) {
+Index Wavefront::Impl::new_row(std::size_t size) {
   const std::size_t kind = std::bit_width(size) - 1;
   if (kind < free_.size() && !free_[kind].empty()) {
     const Index row = free_[kind].back();
@@ -447,22 +523,22 @@ Index Wavefront::new_row(std::size_t size) {
     throw ResourceExhausted("Wavefront: too many distances from several points; use fewer source points");
   entries_.resize(row + size);
   if (d_ != 2) displacements_.resize(entries_.size() * d_);
-  if (directions_) ways_.resize(entries_.size());
+  if (directions_) paths_.resize(entries_.size());
   return static_cast<Index>(row);
 }
 
 /// Swaps two entries except `count`, which belongs to the block.
-void Wavefront::swap_entries(Index a, Index b) {
+void Wavefront::Impl::swap_entries(Index a, Index b) {
   std::swap(entries_[a], entries_[b]);
   std::swap(entries_[a].count, entries_[b].count);
-  if (directions_) std::swap(ways_[a], ways_[b]);
+  if (directions_) std::swap(paths_[a], paths_[b]);
   if (d_ == 2) return;
   const auto of = [&](Index entry) { return displacements_.begin() + static_cast<std::ptrdiff_t>(entry * d_); };
   std::swap_ranges(of(a), of(a) + static_cast<std::ptrdiff_t>(d_), of(b));
 }
 
 /// Spreads the front from a vertex in other dimensions than 2: transports the displacement from the point along the edges.
-void Wavefront::carry(Index from, Index point, double distance) {
+void Wavefront::Impl::carry(Index from, Index point, double distance) {
   Scratch here(d_), left(d_), there(d_);
   std::ranges::copy(displacement(*find(from, point)), here.data());
   const std::size_t degree = graph_.star(from).degree();
@@ -479,7 +555,7 @@ void Wavefront::carry(Index from, Index point, double distance) {
 
 /// The factor u by which the path to a vertex is longer than the straight line, computed from the neighbors up to `distance`
 /// (`eikonal_factor`).
-double Wavefront::factor_at(Index vertex, Index point, std::span<const double> displacement, double distance) {
+double Wavefront::Impl::factor_at(Index vertex, Index point, std::span<const double> displacement, double distance) {
   const double straight = length(displacement);
   const Star star = graph_.star(vertex);
   if (!(straight > 0) || !find_axes(star, axis_)) return 1;
@@ -499,6 +575,64 @@ double Wavefront::factor_at(Index vertex, Index point, std::span<const double> d
     upwind_.push_back({edge, product / (edge * straight), line > 0 ? there->distance / line : 1});
   }
   return upwind_.empty() ? 1 : eikonal_factor(straight, std::span(upwind_));
+}
+
+Wavefront::Wavefront(const TangentGraph& graph, std::shared_ptr<const OneRings> one_rings, bool directions)
+    : impl_(std::make_unique<Impl>(graph, std::move(one_rings), directions)) {}
+Wavefront::~Wavefront() = default;
+Wavefront::Wavefront(Wavefront&&) noexcept = default;
+Wavefront& Wavefront::operator=(Wavefront&&) noexcept = default;
+
+Index Wavefront::add(const Source& source) { return impl_->add(source); }
+Index Wavefront::points() const noexcept { return impl_->points_; }
+const TangentGraph& Wavefront::graph() const noexcept { return impl_->graph_; }
+bool Wavefront::has_directions() const noexcept { return impl_->directions_; }
+void Wavefront::restart(std::span<const Seed> seeds) { impl_->restart(seeds); }
+void Wavefront::run(double radius, const std::stop_token& stop) { impl_->run(radius, stop); }
+double Wavefront::next() const { return impl_->next(); }
+
+double Wavefront::distance(Vertex vertex) const {
+  const auto* const entry = impl_->nearest(vertex);
+  return entry ? entry->distance * impl_->graph_.length_unit() : std::numeric_limits<double>::infinity();
+}
+
+Index Wavefront::nearest(Vertex vertex) const {
+  const auto* const entry = impl_->nearest(vertex);
+  return entry ? entry->point : -1;
+}
+
+Vec2 Wavefront::direction(Vertex vertex) const {
+  const auto* const path = impl_->path(vertex);
+  return path ? path->direction : Vec2{NAN, NAN};
+}
+
+double Wavefront::direction_error(Vertex vertex) const {
+  // The two estimates of a direction lie on both sides of it, so the expected error is half of their difference
+  // (docs/concepts/accuracy.md).
+  constexpr double share_of_difference = 0.5;
+  const auto* const path = impl_->path(vertex);
+  return path ? share_of_difference * std::sqrt(path->variance) : NAN;
+}
+
+bool Wavefront::is_mirrored(Vertex vertex) const {
+  const auto* const path = impl_->path(vertex);
+  return path && path->mirrored;
+}
+
+Vec2 Wavefront::arrival(Vertex vertex) const {
+  const auto* const path = impl_->path(vertex);
+  if (!path) return {NAN, NAN};
+  if (path->arrival != Vec2{}) return path->arrival;  // also if it is NaN
+  const Star star = impl_->graph_.star(vertex.index);
+  std::array<Vec2, 2> ends{};
+  for (std::size_t k = 0; k < 2; ++k)
+    if (const auto end = std::ranges::find(star.neighbors, path->last[k]); end != star.neighbors.end()) {
+      const std::span<const double> log = star.log(static_cast<std::size_t>(end - star.neighbors.begin()));
+      ends[k] = {log[0], log[1]};
+    }
+  const Vec2 crossing = (1.0 - path->share) * ends[0] + static_cast<double>(path->share) * ends[1];
+  const double away = length(crossing);
+  return (-1 / away) * crossing;
 }
 
 }  // namespace ahm

@@ -52,18 +52,21 @@ class Wavefront {
                                                    bool midpoints = true);
 
   /// @param graph       must outlive the front
-  /// @param stars       one-rings of this graph; null: the front computes them vertex by vertex
+  /// @param one_rings   one-rings of this graph; null: the front computes them vertex by vertex
   /// @param directions  whether to compute `direction` and `arrival`, too (d = 2)
-  explicit Wavefront(const TangentGraph& graph, std::shared_ptr<const OneRings> stars = nullptr,
+  explicit Wavefront(const TangentGraph& graph, std::shared_ptr<const OneRings> one_rings = nullptr,
                      bool directions = false);
+  ~Wavefront();
+  Wavefront(Wavefront&&) noexcept;
+  Wavefront& operator=(Wavefront&&) noexcept;
 
   /// Adds the points of a source. Points are numbered from 0 in the order in which they are added.
   /// @return the number of the first added point
   /// @throws InvalidArgument when the source does not fit the graph
   Index add(const Source& source);
   /// Number of points added so far.
-  Index points() const noexcept { return points_; }
-  const TangentGraph& graph() const noexcept { return graph_; }
+  Index points() const noexcept;
+  const TangentGraph& graph() const noexcept;
 
   /// Exact polar coordinates of one vertex, for example from exact windows around the source.
   struct Seed {
@@ -83,17 +86,14 @@ class Wavefront {
   /// @throws Cancelled when a stop is requested
   void run(double radius = std::numeric_limits<double>::infinity(), const std::stop_token& stop = {});
   /// All distances below this one are final, world units; infinity if the front has visited all vertices it can reach.
-  double next() const {
-    return queue_.empty() ? std::numeric_limits<double>::infinity()
-                          : (queue_.top().distance - longest_) * graph_.length_unit();
-  }
+  double next() const;
 
   /// Distance to the nearest point, world units; infinity at vertices that the front has not reached.
   double distance(Vertex vertex) const;
   /// Unit direction in which the geodesic path leaves the nearest point, in the frame of the source. Distance times direction are geodesic
   /// polar coordinates [MR12]. NaN at the point itself and at vertices that the front has not reached.
   Vec2 direction(Vertex vertex) const;
-  bool has_directions() const noexcept { return directions_; }
+  bool has_directions() const noexcept;
   /// Expected error of the direction, radians. At each side that the path crosses there are two estimates of the direction. The error is
   /// half the root of the sum of their squared differences. At a seed it is `Seed::error`. NaN at vertices that the front has not reached.
   double direction_error(Vertex vertex) const;
@@ -106,119 +106,8 @@ class Wavefront {
   Index nearest(Vertex vertex) const;
 
  private:
-  /// Distance of a vertex from one point. Vertices near the border between two points have entries for both, so that both fronts can unfold
-  /// across it. The entries of a vertex are contiguous, the nearest first, in blocks of 1, 2, 4, 8 or 16.
-  struct Entry {
-    double distance = 0, focusing = 0;  ///< distance, and m of docs/concepts/accuracy.md
-    Index point = -1;
-    std::uint8_t gains = 0;  ///< how often the distance was improved
-    std::uint8_t count = 0;  ///< number of entries of the vertex; valid in the first of them
-  };
-  /// The geodesic path of an entry.
-  struct Way {
-    Vec2 direction;                     ///< direction at the point, in the frame of the source
-    Vec2 arrival{};                     ///< direction at the vertex, in its frame; {0, 0}: from `last`; NaN: unknown
-    std::array<Index, 2> last{-1, -1};  ///< ends of the side that the path crosses last; equal: it follows an edge
-    float share = 0;                    ///< where the path crosses that side: 0 at the first end, 1 at the second
-    float variance = 0;                 ///< sum of squared differences of the direction estimates (`direction_error`)
-    bool mirrored = false;              ///< as `is_mirrored`
-  };
-  /// A neighbor of a vertex, and the angle from it to the next neighbor counterclockwise.
-  struct Corner {
-    Index neighbor;
-    bool reflects;  ///< whether the transport along the edge is a reflection
-    double length;
-    double cosine, sine;  ///< of the angle; NaN if there is no triangle between the two neighbors
-  };
-  /// The corners around a vertex.
-  struct Seen {
-    Index vertex = -1;
-    std::vector<Corner> corners;
-  };
-  /// A neighbor of a vertex in its tangent plane.
-  struct Neighbor {
-    Index vertex;
-    Vec2 log;
-    double length, turn;
-    std::size_t edge;
-    bool reflects;
-  };
-  /// State of a neighbor while the front spreads from a vertex.
-  struct Known {
-    double distance, along, focusing;  ///< shortest distance so far, distance along the edge, m
-    bool is_new;                       ///< whether this vertex has improved the distance
-    Way way;
-  };
-  /// A neighbor from which the front comes along an axis (`eikonal_factor`).
-  struct Upwind {
-    double length, cosine, factor;
-  };
-  struct Waiting {
-    double distance;
-    Index vertex, point;
-    bool operator>(const Waiting& other) const {
-      return distance != other.distance ? distance > other.distance
-                                        : (vertex != other.vertex ? vertex > other.vertex : point > other.point);
-    }
-  };
-
-  std::span<const Entry> entries_of(Index vertex) const {
-    const Index first = first_[vertex];
-    return first < 0 ? std::span<const Entry>() : std::span(&entries_[first], entries_[first].count);
-  }
-  const Entry* find(Index vertex, Index point) const {
-    for (const Entry& entry : entries_of(vertex))
-      if (entry.point == point) return &entry;
-    return nullptr;
-  }
-  Index number(const Entry& entry) const { return static_cast<Index>(&entry - entries_.data()); }
-  Index append(Index vertex);
-  Index new_row(std::size_t size);
-  void swap_entries(Index a, Index b);
-  /// A vertex near a point, with its position relative to the point from the source.
-  struct Given {
-    Index vertex, point;
-    double distance;
-    Vec2 offset, arrival;  ///< position in the frame of the source; direction at the vertex, in its frame
-    bool mirrored;
-  };
-
-  void offer_midpoints(std::vector<Given>& given);
-  void offer(Index vertex, Index point, double distance, double slack, std::span<const double> displacement,
-             const Way& way, double focusing = 0);
-  Index entry_to_take(Index vertex, Index point, double distance);
-  void spread(Index from, Index point, double distance);
-  void carry(Index from, Index point, double distance);
-  double factor_at(Index vertex, Index point, std::span<const double> displacement, double distance);
-  std::span<const double> displacement(const Entry& entry) const {
-    return std::span(displacements_).subspan(number(entry) * d_, d_);
-  }
-  std::span<const Corner> around(Index vertex);
-  double curvature(Index vertex);
-
-  const TangentGraph& graph_;
-  std::size_t d_;
-  std::vector<Index> first_;  ///< first entry of each vertex or midpoint; -1: none
-  std::vector<Entry> entries_;
-  std::array<std::vector<Index>, 4> free_;  ///< unused blocks of 1, 2, 4 and 8 entries
-  std::vector<double> displacements_;       ///< d per entry: from the vertex to the point, vertex frame; d = 2: empty
-  double longest_ = 0;  ///< longest edge passed: a path of length L crosses no side with an end beyond L + `longest_`
-  double missed_;       ///< tolerance of `across_side`: share of a side by which a line may miss it
-  bool is_curved_;      ///< whether paths carry the curvature of the front: on Delaunay triangulations
-  bool directions_;
-  bool of_curve_ = false;           ///< whether samples of a curve are among the points
-  std::vector<double> curvatures_;  ///< curvature of vertices not in `stars_`, empty until used; NaN: not computed yet
-  std::vector<Way> ways_;           ///< paths of the entries; empty without directions
-  std::priority_queue<Waiting, std::vector<Waiting>, std::greater<>> queue_;
-  std::shared_ptr<const OneRings> stars_;
-  std::vector<Seen> seen_;      ///< cache of one-rings that are not in `stars_`, indexed by the vertex modulo its size
-  std::vector<Corner> around_;  ///< one-ring of the current vertex
-  std::vector<Neighbor> neighbors_;
-  std::vector<Known> known_;  ///< states of the neighbors of the current vertex
-  std::vector<std::size_t> axis_;
-  std::vector<const Entry*> nearest_;
-  std::vector<Upwind> upwind_;
-  Index points_ = 0;
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace ahm
