@@ -143,7 +143,7 @@ nlohmann::ordered_json as_json(const LogmapRun& run, const OutputOptions& output
 
 std::string as_text(const LogmapRun& run) {
   std::string text = run.is_named ? fmt::format("{}, source {}: ", run.path, to_string(run.spec)) : "";
-  text += fmt::format("{} {}", run.rows.status.size(), run.rows.status.size() == 1 ? "vertex" : "vertices");
+  text += counted(run.rows.status.size(), "vertex");
   for (Status s : all_statuses)
     if (const std::size_t c = count(run.rows, s); c > 0 || s == Status::ok)
       text += fmt::format(", {} {}", c, to_string(s));
@@ -155,8 +155,7 @@ std::string as_text(const LogmapRun& run) {
   if (!run.rows.error_estimate.empty())
     text += fmt::format(", median error of (u, v) about {:.2g}", median(run.rows.error_estimate));
   if (const auto bounded = std::ranges::count(run.rows.bounded, 1); bounded > 0)
-    text += fmt::format(", {} only a lower bound (the straight line)",
-                        bounded == 1 ? "1 distance is" : fmt::format("{} distances are", bounded));
+    text += fmt::format(", {} only a lower bound (the straight line)", counted(bounded, "distance", "are"));
   return text + "\n";
 }
 

@@ -84,10 +84,10 @@ LogMap solve(const SolveOptions& options, const Input& input, const SurfaceCurve
 
 void comment_on_curve(const SurfaceCurve& curve, double edge, Journal& journal) {
   if (curve.straight > 0)
-    journal.add_warning(fmt::format(
-        "--curve: {} of the lines between its points {} straight in space and projected to the surface instead of a "
-        "shortest path: {}",
-        curve.straight, curve.straight == 1 ? "is" : "are", curve.straight_reason));
+    journal.add_warning(
+        fmt::format("--curve: {} between its points {} straight in space and projected to the surface instead of a "
+                    "shortest path: {}",
+                    counted(curve.straight, "line"), curve.straight == 1 ? "is" : "are", curve.straight_reason));
   if (curve.gap > 2 * edge)
     journal.add_warning(fmt::format(
         "--curve: the straight lines between its points are up to {:.4g} ({:.0f} mean edge lengths) off the surface; "

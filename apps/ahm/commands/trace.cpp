@@ -80,9 +80,9 @@ Polylines find_lines(const TraceCommandOptions& options, const LineFinder& finde
     length += line.length;
     at_boundary += line.complete ? 0 : 1;
   }
-  result.text = fmt::format("{} of {}, total length {:.6g}; {} at the boundary\n",
-                            counted(options.lines.size(), "line"), counted(result.points.size(), "point"), length,
-                            at_boundary == 1 ? "1 ends" : fmt::format("{} end", at_boundary));
+  result.text =
+      fmt::format("{} of {}, total length {:.6g}; {} at the boundary\n", counted(options.lines.size(), "line"),
+                  counted(result.points.size(), "point"), length, counted(at_boundary, "line", "end"));
   return result;
 }
 

@@ -56,8 +56,7 @@ void keep_surroundings(PreparedCloud& cloud, const io::Geometry& input, double r
     throw InvalidArgument(
         fmt::format("--local: only {} within {:.6g} of the source {}, and a surface requires 3; use a larger radius, "
                     "or leave it out",
-                    near.size() == 1 ? "1 point lies" : fmt::format("{} points lie", near.size()), 1.5 * radius,
-                    to_string(source)));
+                    detail::counted(near.size(), "point", "lie"), 1.5 * radius, to_string(source)));
 }
 
 #ifdef AHM_WITH_PCL

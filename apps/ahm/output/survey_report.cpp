@@ -16,11 +16,6 @@
 namespace ahm::app {
 namespace {
 
-/// "1 part", "2 parts"
-std::string counted(std::int64_t count, const std::string& noun) {
-  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
-}
-
 std::string line(std::string_view label, const std::string& value) { return fmt::format("  {:<20}{}\n", label, value); }
 
 std::string triple(const Vec3& v) { return fmt::format("{:.6g} {:.6g} {:.6g}", v[0], v[1], v[2]); }
@@ -56,8 +51,8 @@ std::string parts_text(const Survey& s) {
   double total = 0;
   for (Index size : sizes) total += size;
   const std::string at = s.as_cloud ? fmt::format(" at k = {}", figure<std::int64_t>(*s.surface, "k")) : "";
-  return fmt::format("{}{}; the largest has {} {} ({:.1f} %)", sizes.size(), at, sizes[0],
-                     sizes[0] == 1 ? "vertex" : "vertices", 100.0 * sizes[0] / total);
+  return fmt::format("{}{}; the largest has {} ({:.1f} %)", sizes.size(), at, counted(sizes[0], "vertex"),
+                     100.0 * sizes[0] / total);
 }
 
 std::string range_text(const LengthRange& range, const char* what) {
@@ -110,18 +105,15 @@ std::string genus_text(const TopologyReport& t) {
 
 std::string orientation_text(const TopologyReport& t) {
   if (!t.orientable) return "not orientable: maps use reflections";
-  return t.reoriented > 0 ? counted(t.reoriented, "face") + (t.reoriented == 1 ? " is" : " are") +
-                                " reversed to agree with the others"
-                          : "consistent";
+  return t.reoriented > 0 ? counted(t.reoriented, "face", "are") + " reversed to agree with the others" : "consistent";
 }
 
 std::string non_manifold_text(const TopologyReport& t) {
   if (t.non_manifold_edges == 0 && t.non_manifold_vertices == 0) return "none";
-  const auto vertices = [](Index count) { return fmt::format("{} {}", count, count == 1 ? "vertex" : "vertices"); };
   const std::string edges =
       t.non_manifold_edges > 0 ? counted(t.non_manifold_edges, "edge") + " with more than two faces, " : "";
   return fmt::format("{}{} with several fans of faces; --non-manifold split cuts the mesh there and adds {}", edges,
-                     vertices(t.non_manifold_vertices), vertices(t.added_vertices));
+                     counted(t.non_manifold_vertices, "vertex"), counted(t.added_vertices, "vertex"));
 }
 
 std::string repair_text(const RepairSurvey& repair, const TopologyReport& t) {

@@ -67,10 +67,6 @@ std::string in_singular(std::string text) {
 
 }  // namespace
 
-std::string counted(std::size_t count, std::string_view noun) {
-  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
-}
-
 std::string worded(const Error& error) {
   for (const auto& [fault, remedy] : advices)
     if (error.fault() == fault) return in_singular(fmt::format("{}; {}", error.problem(), remedy));

@@ -8,12 +8,12 @@
 
 #include "ahm/error.hpp"
 #include "ahm/report.hpp"
+#include "ahm/util/text.hpp"
 #include "output/warning_text.hpp"
 
 namespace ahm::app {
 
-/// A count with its noun: "1 point", "3 points". @param noun  singular; its plural ends in s
-std::string counted(std::size_t count, std::string_view noun);
+using detail::counted;
 
 /// The message of an error. The program's options replace the remedy of the library, which names arguments of its functions.
 std::string worded(const Error& error);

@@ -14,6 +14,7 @@
 #include "ahm/io/temporary_folder.hpp"
 #include "ahm/surface/mesh_repair.hpp"
 #include "ahm/util/shell.hpp"
+#include "ahm/util/text.hpp"
 #include "ahm/util/vec.hpp"
 
 namespace ahm::viewer {
@@ -230,7 +231,7 @@ SurfacePoint Request::point(const char* name) const { return read_point(at(name)
 std::vector<SurfacePoint> Request::points(const char* name) const {
   const json& list = at(name);
   if (!list.is_array() || list.size() > most_points)
-    refuse(name, "must be a list of at most " + std::to_string(most_points) + " points");
+    refuse(name, "must be a list of at most " + detail::counted(most_points, "point"));
   std::vector<SurfacePoint> points;
   for (std::size_t k = 0; k < list.size(); ++k)
     points.push_back(read_point(list[k], std::string(name) + "[" + std::to_string(k) + "]"));

@@ -42,8 +42,8 @@ GridGraph::GridGraph(Grid grid) : grid_(checked(std::move(grid))), dimension_(st
   }
   size_ = static_cast<Index>(size);
   if (!grid_.blocked.empty() && static_cast<Offset>(grid_.blocked.size()) != cells)
-    throw InvalidGeometry("'blocked' has " + std::to_string(grid_.blocked.size()) + " bytes, the grid has " +
-                          std::to_string(cells) + " cells");
+    throw InvalidGeometry("'blocked' has " + detail::counted(grid_.blocked.size(), "byte") + ", the grid has " +
+                          detail::counted(cells, "cell"));
   length_unit_ = std::ldexp(1.0, std::ilogb(*std::max_element(grid_.spacing.begin(), grid_.spacing.end())));
   if (dimension_ == 2)
     transports_ = {1, 0, 1, 0, 1, 0, 1, 0};
@@ -58,7 +58,7 @@ GridGraph::GridGraph(Grid grid) : grid_(checked(std::move(grid))), dimension_(st
     for (std::size_t k = 0; k < patterns_[p].degree * dimension_; ++k)
       mean_edge_length_ += static_cast<double>(count[p]) * std::abs(patterns_[p].logs[k]);
   }
-  if (edge_count_ == 0) throw InvalidGeometry("all " + std::to_string(cells) + " cells of the grid are blocked");
+  if (edge_count_ == 0) throw InvalidGeometry("all " + detail::counted(cells, "cell") + " of the grid are blocked");
   mean_edge_length_ /= static_cast<double>(edge_count_);
 }
 
@@ -148,7 +148,7 @@ std::optional<Frame> GridGraph::frame(Index vertex) const {
 
 Vertex GridGraph::vertex(std::span<const Index> steps) const {
   if (steps.size() != grid_.shape.size())
-    throw InvalidArgument("'steps' must be " + std::to_string(dimension_) + " numbers");
+    throw InvalidArgument("'steps' must be " + detail::counted(dimension_, "number"));
   Index number = 0;
   for (int a = dimension_ - 1; a >= 0; --a) {
     if (steps[a] < 0 || steps[a] >= grid_.shape[a])
@@ -168,7 +168,7 @@ Vec3 GridGraph::position(Vertex vertex) const {
 
 Source GridGraph::source_at(std::span<const double> point) const {
   if (point.size() != grid_.shape.size())
-    throw InvalidArgument("'point' must be " + std::to_string(dimension_) + " numbers");
+    throw InvalidArgument("'point' must be " + detail::counted(dimension_, "number"));
   Steps cell{};
   Vec3 share{};  // position in the cell, 0 to 1 along each axis
   for (int a = 0; a < dimension_; ++a) {

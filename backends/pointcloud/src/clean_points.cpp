@@ -146,7 +146,7 @@ bool before_on_curve(const Vec3& point, const Vec3& other) {
 CleanPoints clean_points(std::span<const Vec3> input, const std::function<Index(std::size_t)>& row,
                          const CloudOptions& options, CloudDetails& report) {
   if (input.size() > static_cast<std::size_t>(std::numeric_limits<Index>::max() / 2))
-    throw InvalidGeometry("the cloud has " + std::to_string(input.size()) + " points; at most 2^30 are supported");
+    throw InvalidGeometry("the cloud has " + detail::counted(input.size(), "point") + "; at most 2^30 are supported");
   std::vector<Index> kept;
   std::vector<Vec3> placed = finite_points(input, row, options, kept, report);
   const Placement placement = placement_of(placed, options.threads);
@@ -186,8 +186,8 @@ CleanPoints clean_points(std::span<const Vec3> input, const std::function<Index(
     clean.clean_of_input[kept[position]] = static_cast<Index>(clean.points.size()) - 1;
   }
   if (clean.points.size() < 3)
-    throw InvalidGeometry("the cloud has " + std::to_string(clean.points.size()) + " distinct finite " +
-                          (clean.points.size() == 1 ? "point" : "points") + "; at least 3 are needed");
+    throw InvalidGeometry("the cloud has " + detail::counted(clean.points.size(), "distinct finite point") +
+                          "; at least 3 are needed");
   return clean;
 }
 

@@ -42,8 +42,7 @@ constexpr double coarse_step = 0.1, grid_step = 0.4;
 
 void check_arguments(std::span<const Vec3> points, const CloudOptions& options) {
   if (points.size() < 3)
-    throw InvalidGeometry("the cloud has " + std::to_string(points.size()) +
-                          (points.size() == 1 ? " point" : " points") + "; at least 3 are needed");
+    throw InvalidGeometry("the cloud has " + detail::counted(points.size(), "point") + "; at least 3 are needed");
   if (options.k && *options.k < 3)
     throw InvalidArgument("k is " + std::to_string(*options.k) + "; it must be at least 3 (default 30)");
   if (!(options.max_edge_ratio >= 1))
@@ -60,8 +59,8 @@ class KeptPoints {
   KeptPoints(std::span<const Vec3> points, std::span<const Vec3> normals, const std::optional<std::vector<Row>>& rows)
       : points_(points), normals_(normals) {
     if (!normals.empty() && normals.size() != points.size())
-      throw InvalidArgument("'normals' has " + std::to_string(normals.size()) + " entries for " +
-                            std::to_string(points.size()) + " points; give none or one per point");
+      throw InvalidArgument("'normals' has " + detail::counted(normals.size(), "entry") + " for " +
+                            detail::counted(points.size(), "point") + "; give none or one per point");
     if (!rows) return;
     rows_ = *rows;
     check_rows(static_cast<Index>(points.size()));
@@ -320,8 +319,8 @@ PointCloudSurface PointCloudSurface::build(std::span<const Vec3> input, std::spa
   return PointCloudSurface(*std::move(graph), std::move(details), *std::move(rows), input, options.rows,
                            std::move(local));
 } catch (const std::bad_alloc&) {
-  throw ResourceExhausted("out of memory while building the graph of a cloud of " + std::to_string(input.size()) +
-                          " points");
+  throw ResourceExhausted("out of memory while building the graph of a cloud of " +
+                          detail::counted(input.size(), "point"));
 }
 
 Method PointCloudSurface::suggested_method() const {

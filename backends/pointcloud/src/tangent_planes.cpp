@@ -14,6 +14,7 @@
 #include "ahm/pointcloud/plane_fit.hpp"
 #include "ahm/util/parallel.hpp"
 #include "ahm/util/quantile.hpp"
+#include "ahm/util/text.hpp"
 #include "cloud_parts.hpp"
 #include "tangent_edges.hpp"
 
@@ -179,7 +180,7 @@ std::span<const Index> neighbors_of(std::span<const Vec3> points, Index i, const
   buffers.indices.resize(static_cast<std::size_t>(wanted));
   for (Index j : buffers.indices)
     if (found != wanted || j < 0 || static_cast<std::size_t>(j) >= points.size())
-      throw InvalidArgument("options.search: expected " + std::to_string(wanted) + " neighbors of point " +
+      throw InvalidArgument("options.search: expected " + detail::counted(wanted, "neighbor") + " of point " +
                             std::to_string(i) + ", found " + std::to_string(found) + ", among them point " +
                             std::to_string(j));
   // The point is its own nearest neighbor, but a search in lower precision may rank it elsewhere or miss it.

@@ -14,6 +14,7 @@
 #include "ahm/util/memory.hpp"
 #include "ahm/util/small_math.hpp"
 #include "ahm/util/stopwatch.hpp"
+#include "ahm/util/text.hpp"
 #include "ahm/util/vec.hpp"
 #include "polygon.hpp"
 
@@ -61,7 +62,8 @@ FacePoint locate(const Refinement& refinement, Index face, const Vec3& position)
 
 /// @param what  property of the faces, such as "twisted"
 std::string faces_that_are(const char* what, const std::vector<Index>& faces) {
-  return std::to_string(faces.size()) + " faces are " + what + ", the first is face " + std::to_string(faces.front());
+  return detail::counted(faces.size(), "face", "are") + " " + what + ", the first is face " +
+         std::to_string(faces.front());
 }
 
 RowMap rows_of(const PolygonMesh& mesh) {

@@ -6,6 +6,7 @@
 #include "ahm/error.hpp"
 #include "ahm/tiles/tiled_local_maps.hpp"
 #include "ahm/util/small_math.hpp"
+#include "ahm/util/text.hpp"
 #include "ahm/util/vec.hpp"
 #include "directions.hpp"
 #include "row_values.hpp"
@@ -45,8 +46,8 @@ class Means final : public LocalFeature {
       columns_.emplace_back(file);
       if (columns_.back().size() != graph.manifest().points)
         throw InvalidArgument("'" + file + "' has " + std::to_string(columns_.back().size()) +
-                              " value(s); the input of the tiles has " + std::to_string(graph.manifest().points) +
-                              " rows");
+                              " value(s); the input of the tiles has " +
+                              detail::counted(graph.manifest().points, "row"));
     }
   }
   std::uint64_t identity(std::size_t tile) const override {

@@ -163,7 +163,7 @@ void check(const TileOptions& options, const io::PointStream& stream) {
     throw InvalidArgument("normals_given", "the file has normals, which tiles do not support",
                           "set ignore_normals to estimate them");
   if (stream.size() > most_points)
-    throw ResourceExhausted("the file has " + std::to_string(stream.size()) + " points; at most 2^30 are supported");
+    throw ResourceExhausted("the file has " + detail::counted(stream.size(), "point") + "; at most 2^30 are supported");
 }
 
 /// The folder, or its nearest parent that exists.

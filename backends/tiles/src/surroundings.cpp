@@ -94,8 +94,8 @@ void collect(const ArrayFile& file, Index first, const pointcloud::Placement& pl
 void check_memory(const TileFolder& folder, std::size_t tile, std::size_t points) {
   const double wanted = static_cast<double>(points) * bytes_per_point;
   if (wanted > static_cast<double>(folder.options().memory))
-    throw ResourceExhausted("tile " + std::to_string(tile) + " and its surroundings have " + std::to_string(points) +
-                            " points, which require about " + detail::gigabytes(wanted) +
+    throw ResourceExhausted("tile " + std::to_string(tile) + " and its surroundings have " +
+                            detail::counted(points, "point") + ", which require about " + detail::gigabytes(wanted) +
                             "; raise the memory limit, plan smaller tiles, or remove stray points first");
 }
 

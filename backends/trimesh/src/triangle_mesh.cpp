@@ -25,8 +25,8 @@ constexpr double min_edge_by_length = 1e-15;
 
 void check_lengths(std::span<const Triangle> faces, std::span<const std::array<double, 3>> lengths) {
   if (lengths.size() != faces.size())
-    throw InvalidGeometry("'lengths' has " + std::to_string(lengths.size()) + " entries for " +
-                          std::to_string(faces.size()) + " faces");
+    throw InvalidGeometry("'lengths' has " + detail::counted(lengths.size(), "entry") + " for " +
+                          detail::counted(faces.size(), "face"));
   for (std::size_t f = 0; f < faces.size(); ++f)
     for (int s = 0; s < 3; ++s) {
       const double l = lengths[f][s], rest = lengths[f][(s + 1) % 3] + lengths[f][(s + 2) % 3];

@@ -456,7 +456,7 @@ TriangleMeshSurface TriangleMeshSurface::build(TriangleMesh mesh, const MeshOpti
 
 TriangleMeshSurface TriangleMeshSurface::build(std::span<const Vec3> positions, std::span<const Triangle> faces,
                                                const MeshOptions& options) {
-  const std::string what = "building the graph of a mesh of " + std::to_string(faces.size()) + " faces";
+  const std::string what = "building the graph of a mesh of " + detail::counted(faces.size(), "face");
   return detail::with_memory_check(what, [&] {
     detail::Stopwatch stopwatch;
     options.progress.step("checks", 0.0);

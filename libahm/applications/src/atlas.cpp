@@ -488,9 +488,9 @@ ChartBox smallest_box(const std::vector<Vec2>& hull) {
 std::vector<ChartBox> chart_boxes(const Atlas& atlas, const FaceList& faces) {
   return detail::with_memory_check("bounding charts", [&] {
     if (faces.size() != atlas.chart_of_face.size() || 2 * faces.vertices.size() != atlas.coordinates.size())
-      throw InvalidArgument("there are " + std::to_string(faces.size()) + " faces with " +
-                            std::to_string(faces.vertices.size()) + " corners, but the atlas has " +
-                            std::to_string(atlas.chart_of_face.size()) + " faces with " +
+      throw InvalidArgument("there are " + detail::counted(faces.size(), "face") + " with " +
+                            detail::counted(faces.vertices.size(), "corner") + ", but the atlas has " +
+                            detail::counted(atlas.chart_of_face.size(), "face") + " with " +
                             std::to_string(atlas.coordinates.size() / 2));
     std::vector<ChartBox> boxes;
     for (const Chart& chart : atlas.charts) {
@@ -513,10 +513,10 @@ namespace {
 
 void check(const Atlas& atlas, const FaceList& faces) {
   if (atlas.chart_of_face.size() != faces.size() || atlas.coordinates.size() != 2 * faces.vertices.size())
-    throw InvalidArgument("the atlas has " + std::to_string(atlas.chart_of_face.size()) + " faces and " +
-                          std::to_string(atlas.coordinates.size() / 2) + " corners, but 'faces' has " +
-                          std::to_string(faces.size()) + " faces and " + std::to_string(faces.vertices.size()) +
-                          " corners");
+    throw InvalidArgument("the atlas has " + detail::counted(atlas.chart_of_face.size(), "face") + " and " +
+                          detail::counted(atlas.coordinates.size() / 2, "corner") + ", but 'faces' has " +
+                          detail::counted(faces.size(), "face") + " and " +
+                          detail::counted(faces.vertices.size(), "corner"));
 }
 
 /// Faces cut into fans of triangles, and the distortion of these triangles in the atlas.
@@ -615,7 +615,7 @@ Atlas make_atlas(const AnySolver& maps, std::span<const Vertex> sources, const F
   if (!(refine.share >= 0 && refine.share < 1))
     throw InvalidArgument("share is " + detail::number(refine.share) + "; it must be in [0, 1)");
   if (positions.size() != static_cast<std::size_t>(maps.graph().size()))
-    throw InvalidArgument("'positions' has " + std::to_string(positions.size()) + " entries, not " +
+    throw InvalidArgument("'positions' has " + detail::counted(positions.size(), "entry") + ", not " +
                           std::to_string(maps.graph().size()));
   return detail::with_memory_check("making an atlas", [&] {
     AtlasMaker maker(maps, faces);

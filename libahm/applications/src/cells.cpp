@@ -9,6 +9,7 @@
 #include "ahm/error.hpp"
 #include "ahm/maps/straight_line.hpp"
 #include "ahm/util/memory.hpp"
+#include "ahm/util/text.hpp"
 #include "ahm/util/vec.hpp"
 
 namespace ahm {
@@ -56,7 +57,7 @@ VoronoiCells voronoi_cells(Wavefront& front, std::span<const Vertex> vertices) {
     const TangentGraph& graph = front.graph();
     check_vertices(graph, vertices);
     if (front.points() > std::ssize(vertices))
-      throw InvalidArgument("'front' has " + std::to_string(front.points()) + " points, more than 'vertices' (" +
+      throw InvalidArgument("'front' has " + detail::counted(front.points(), "point") + ", more than 'vertices' (" +
                             std::to_string(vertices.size()) + ")");
     for (Vertex vertex : vertices.subspan(static_cast<std::size_t>(front.points())))
       front.add(Source::at_vertex(vertex));

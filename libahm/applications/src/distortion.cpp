@@ -8,6 +8,7 @@
 #include "ahm/error.hpp"
 #include "ahm/util/memory.hpp"
 #include "ahm/util/small_math.hpp"
+#include "ahm/util/text.hpp"
 #include "ahm/util/vec.hpp"
 
 namespace ahm {
@@ -56,7 +57,7 @@ TriangleDistortion distortion_of_triangle(const std::array<Vec3, 3>& p, const st
 
 void check_length(const char* name, std::size_t size, std::size_t wanted) {
   if (size != wanted)
-    throw InvalidArgument("distortion: '" + std::string(name) + "' has " + std::to_string(size) + " numbers, not " +
+    throw InvalidArgument("distortion: '" + std::string(name) + "' has " + detail::counted(size, "number") + ", not " +
                           std::to_string(wanted));
 }
 

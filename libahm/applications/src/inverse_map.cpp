@@ -13,6 +13,7 @@
 #include "ahm/surface/surface_triangles.hpp"
 #include "ahm/util/shortest_paths.hpp"
 #include "ahm/util/small_math.hpp"
+#include "ahm/util/text.hpp"
 #include "ahm/util/vec.hpp"
 
 namespace ahm {
@@ -28,7 +29,7 @@ void check(const MappedSurface& s, const InverseMapOptions& options) {
   const std::size_t n = s.positions.size();
   const auto check_length = [&](const char* name, std::size_t size, std::size_t wanted) {
     if (size != wanted)
-      throw InvalidArgument("'" + std::string(name) + "' has " + std::to_string(size) + " entries, not " +
+      throw InvalidArgument("'" + std::string(name) + "' has " + detail::counted(size, "entry") + ", not " +
                             std::to_string(wanted));
   };
   check_length("normals", s.normals.size(), n);
@@ -241,8 +242,8 @@ std::vector<double> required_quality(const TangentGraph& graph, const LogMap& ma
   if (!(options.min_quality > 0)) return {};
   if (options.quality.empty()) return map_quality(graph, map, options.threads);
   if (options.quality.size() != static_cast<std::size_t>(graph.size()))
-    throw InvalidArgument("the quality has " + std::to_string(options.quality.size()) + " entries for " +
-                          std::to_string(graph.size()) + " vertices");
+    throw InvalidArgument("the quality has " + detail::counted(options.quality.size(), "entry") + " for " +
+                          detail::counted(graph.size(), "vertex"));
   return {options.quality.begin(), options.quality.end()};
 }
 

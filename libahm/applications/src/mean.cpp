@@ -205,8 +205,8 @@ void set_points(Problem& problem, std::span<const Source> points, std::span<cons
   const std::string name = problem.name;
   if (points.empty()) throw InvalidArgument(name + ": there are no points");
   if (!weights.empty() && weights.size() != points.size())
-    throw InvalidArgument(name + ": " + std::to_string(weights.size()) + " weights for " +
-                          std::to_string(points.size()) + " points");
+    throw InvalidArgument(name + ": " + detail::counted(weights.size(), "weight") + " for " +
+                          detail::counted(points.size(), "point"));
   double largest = 0;
   for (std::size_t k = 0; k < points.size(); ++k) {
     for (Vertex vertex : points[k].vertices()) check_vertex(problem, vertex, "point " + std::to_string(k));

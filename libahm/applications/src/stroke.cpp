@@ -6,6 +6,7 @@
 
 #include "ahm/error.hpp"
 #include "ahm/util/small_math.hpp"
+#include "ahm/util/text.hpp"
 #include "ahm/util/vec.hpp"
 #include "coverage.hpp"
 
@@ -55,7 +56,7 @@ void check_path(const TangentGraph& graph, std::span<const Vertex> path, bool cl
   if (graph.dimension() != 2)
     throw InvalidArgument("the graph has dimension " + std::to_string(graph.dimension()) + ", not 2");
   if (path.size() < (closed ? 3U : 2U))
-    throw InvalidArgument("'path' has " + std::to_string(path.size()) + " vertices; give at least " +
+    throw InvalidArgument("'path' has " + detail::counted(path.size(), "vertex") + "; give at least " +
                           (closed ? "3" : "2"));
   for (const auto [vertex] : path)
     if (vertex < 0 || vertex >= graph.size())
@@ -110,11 +111,12 @@ void add_sample(Source& source, Vertex vertex, double weight, const Vec2& z, con
 void check_points(std::span<const Source> points, std::span<const double> lengths, bool closed) {
   const std::size_t least = closed ? 3 : 2;
   if (points.size() < least)
-    throw InvalidArgument("'points' has " + std::to_string(points.size()) + " entries; give at least " +
+    throw InvalidArgument("'points' has " + detail::counted(points.size(), "entry") + "; give at least " +
                           std::to_string(least));
   if (lengths.size() != points.size() - (closed ? 0 : 1))
-    throw InvalidArgument("'lengths' has " + std::to_string(lengths.size()) + " entries for " +
-                          std::to_string(points.size()) + " points; an open curve has one fewer, a closed one as many");
+    throw InvalidArgument("'lengths' has " + detail::counted(lengths.size(), "entry") + " for " +
+                          detail::counted(points.size(), "point") +
+                          "; an open curve has one fewer, a closed one as many");
   for (std::size_t k = 0; k < lengths.size(); ++k)
     if (!(lengths[k] > 0) || !std::isfinite(lengths[k]))
       throw InvalidArgument("'lengths' [" + std::to_string(k) + "] is " + std::to_string(lengths[k]) +
@@ -146,8 +148,8 @@ void check_shape(const StrokeOptions& options) {
 
 std::vector<Vec2> directions_of(std::span<const Vec2> positions, std::size_t points, bool closed) {
   if (positions.size() != points)
-    throw InvalidArgument("'positions' has " + std::to_string(positions.size()) + " entries for " +
-                          std::to_string(points) + " points");
+    throw InvalidArgument("'positions' has " + detail::counted(positions.size(), "entry") + " for " +
+                          detail::counted(points, "point"));
   for (std::size_t k = 0; k < points; ++k)
     if (!all_finite(positions[k]))
       throw InvalidArgument("entry " + std::to_string(k) + " of 'positions' is not finite");

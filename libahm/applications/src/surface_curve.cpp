@@ -230,10 +230,9 @@ class CurveCutter {
     if (closed_ && curve_.points.size() > 1) curve_.points.pop_back();  // the first one, repeated
     const std::size_t needed = closed_ ? 3 : 2;
     if (const std::size_t points = pieces_.size() + (closed_ || corners_.empty() ? 0 : 1); points < needed)
-      throw InvalidArgument(
-          "curve_too_short",
-          "the curve has " + std::to_string(points) + " different point" + (points == 1 ? "" : "s") + " on the surface",
-          "give at least " + std::to_string(needed) + (closed_ ? " for a closed curve" : ""));
+      throw InvalidArgument("curve_too_short",
+                            "the curve has " + detail::counted(points, "different point") + " on the surface",
+                            "give at least " + std::to_string(needed) + (closed_ ? " for a closed curve" : ""));
     return std::move(pieces_);
   }
 

@@ -5,6 +5,7 @@
 
 #include "ahm/error.hpp"
 #include "ahm/util/quantile.hpp"
+#include "ahm/util/text.hpp"
 #include "direction.hpp"
 
 namespace ahm::render {
@@ -131,8 +132,9 @@ std::vector<Index> shown_points(const Scene& scene) {
   for (std::size_t i = 0; i < scene.points.size(); ++i)
     if (used[i] && as_vector(scene.points[i]).allFinite()) shown.push_back(static_cast<Index>(i));
   if (shown.empty())
-    throw InvalidGeometry("scene.points: nothing to show, none of the " + std::to_string(scene.points.size()) +
-                          " points is finite" + (scene.face_vertices.empty() ? "" : " and part of a face"));
+    throw InvalidGeometry("scene.points: nothing to show, none of the " +
+                          detail::counted(scene.points.size(), "point") + " is finite" +
+                          (scene.face_vertices.empty() ? "" : " and part of a face"));
   return shown;
 }
 

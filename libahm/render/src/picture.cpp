@@ -9,6 +9,7 @@
 #include "ahm/io/formats.hpp"
 #include "ahm/io/image.hpp"
 #include "ahm/util/parallel.hpp"
+#include "ahm/util/text.hpp"
 #include "ahm/util/vec.hpp"
 #include "annotations.hpp"
 #include "tile.hpp"
@@ -43,13 +44,13 @@ void check_faces(const Scene& scene) {
     const Index vertex = scene.face_vertices[k];
     require(vertex >= 0 && static_cast<std::size_t>(vertex) < scene.points.size(),
             "scene.face_vertices[" + std::to_string(k) + "] = " + std::to_string(vertex) + ": there are " +
-                std::to_string(scene.points.size()) + " points");
+                detail::counted(scene.points.size(), "point"));
   }
 }
 
 void check_size(std::size_t size, std::size_t points, const char* name) {
-  require(size == points, std::string("scene.") + name + ": " + std::to_string(size) + " entries for " +
-                              std::to_string(points) + " points; give one per point");
+  require(size == points, std::string("scene.") + name + ": " + detail::counted(size, "entry") + " for " +
+                              detail::counted(points, "point") + "; give one per point");
 }
 
 /// Checks the lengths of the arrays. The pattern determines which are required; only cells have labels; others are optional.

@@ -6,6 +6,7 @@
 
 #include "ahm/error.hpp"
 #include "ahm/io/image.hpp"
+#include "ahm/util/text.hpp"
 #include "picture.hpp"
 
 namespace ahm::render {
@@ -109,9 +110,10 @@ void check(const TexturedScene& scene, const PictureOptions& options) {
   if (scene.colors.size() != scene.points.size() ||
       (!scene.radii.empty() && scene.radii.size() != scene.points.size()) ||
       (!scene.normals.empty() && scene.normals.size() != scene.points.size()))
-    throw InvalidArgument("scene: " + std::to_string(scene.points.size()) + " points, " +
+    throw InvalidArgument("scene: " + detail::counted(scene.points.size(), "point") + ", " +
                           std::to_string(scene.colors.size()) + " colors, " + std::to_string(scene.radii.size()) +
-                          " radii and " + std::to_string(scene.normals.size()) + " normals; the numbers must be equal");
+                          " radii and " + detail::counted(scene.normals.size(), "normal") +
+                          "; the numbers must be equal");
 }
 
 }  // namespace

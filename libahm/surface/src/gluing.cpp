@@ -30,12 +30,12 @@ bool repeats_a_vertex(std::span<const Index> face, std::vector<Index>& sorted) {
 }
 
 /// Throws if there are faces with a fault. @param what  the fault, as the predicate of "3 faces"
-void refuse(std::string_view fault, const std::vector<Index>& wrong, const FaceList& faces, const std::string& what,
-            const std::string& advice) {
+void refuse(std::string_view fault, const std::vector<Index>& wrong, const FaceList& faces, std::string_view verb,
+            const std::string& what, const std::string& advice) {
   if (wrong.empty()) return;
   ItemList list;
   for (Index f : wrong) list.add(name(f, faces[f]));
-  throw InvalidGeometry(fault, std::to_string(wrong.size()) + " faces " + what + ": " + list.text(), advice);
+  throw InvalidGeometry(fault, detail::counted(wrong.size(), "face", verb) + " " + what + ": " + list.text(), advice);
 }
 
 /// A side of a face, in the bucket of the smaller of its two vertices.
@@ -78,16 +78,17 @@ class Gluer {
     ItemList list;
     for (const auto& [later, earlier] : duplicates_)
       list.add("face " + std::to_string(later) + " repeats face " + std::to_string(earlier));
-    throw InvalidGeometry("duplicate_faces", std::to_string(list.count()) + " faces have a duplicate: " + list.text(),
+    throw InvalidGeometry("duplicate_faces",
+                          detail::counted(list.count(), "face", "have") + " a duplicate: " + list.text(),
                           "remove them");
   }
 
   void refuse_nonmanifold_edges() const {
     if (nonmanifold_edges_.count() > 0)
-      throw InvalidGeometry(
-          "non_manifold_edges",
-          std::to_string(nonmanifold_edges_.count()) + " edges have more than two faces: " + nonmanifold_edges_.text(),
-          "repair them, or cut the mesh there with NonManifold::split");
+      throw InvalidGeometry("non_manifold_edges",
+                            detail::counted(nonmanifold_edges_.count(), "edge", "have") +
+                                " more than two faces: " + nonmanifold_edges_.text(),
+                            "repair them, or cut the mesh there with NonManifold::split");
   }
 
   /// Reverses faces until neighbors agree, one component at a time.
@@ -166,7 +167,7 @@ class Gluer {
         duplicates_.push_back({face_of_[group[s].half], face_of_[group[s - 1].half]});
     if (group.size() > 2)
       nonmanifold_edges_.add("(" + std::to_string(low) + ", " + std::to_string(group[0].high) + ") with " +
-                             std::to_string(group.size()) + " faces");
+                             detail::counted(group.size(), "face"));
   }
 
   void visit_across(Half h, std::vector<Index>& component) {
@@ -223,8 +224,8 @@ FaceFaults find_faults(Index vertices, const FaceList& faces) {
     throw InvalidGeometry("'face_begin' must rise from 0 to the number of corners, " +
                           std::to_string(faces.vertices.size()));
   if (faces.vertices.size() > static_cast<std::size_t>(std::numeric_limits<Half>::max() - 1))
-    throw InvalidGeometry("the mesh has " + std::to_string(faces.vertices.size()) +
-                          " corners; at most 2^31 - 2 are supported");
+    throw InvalidGeometry("the mesh has " + detail::counted(faces.vertices.size(), "corner") +
+                          "; at most 2^31 - 2 are supported");
   FaceFaults faults;
   std::vector<Index> sorted;
   for (std::size_t f = 0; f < faces.size(); ++f) {
@@ -248,13 +249,13 @@ std::vector<std::pair<Index, Index>> find_duplicates(Index vertices, const FaceL
 
 Gluing glue(Index vertices, const FaceList& faces, NonManifold non_manifold, std::span<const std::uint8_t> turned) {
   if (!turned.empty() && turned.size() != faces.size())
-    throw InvalidArgument("'turned' has " + std::to_string(turned.size()) + " entries for " +
-                          std::to_string(faces.size()) + " faces");
+    throw InvalidArgument("'turned' has " + detail::counted(turned.size(), "entry") + " for " +
+                          detail::counted(faces.size(), "face"));
   const FaceFaults faults = find_faults(vertices, faces);
-  refuse("vertices_outside", faults.outside, faces, "have a vertex outside [0, " + std::to_string(vertices) + ")",
+  refuse("vertices_outside", faults.outside, faces, "have", "a vertex outside [0, " + std::to_string(vertices) + ")",
          "number vertices from 0");
-  refuse("small_faces", faults.small, faces, "have fewer than 3 corners", "remove them");
-  refuse("repeated_vertices", faults.repeating, faces, "use a vertex twice", "remove them");
+  refuse("small_faces", faults.small, faces, "have", "fewer than 3 corners", "remove them");
+  refuse("repeated_vertices", faults.repeating, faces, "use", "a vertex twice", "remove them");
   Gluer gluer(vertices, faces);
   gluer.pair_sides();
   gluer.refuse_duplicates();
@@ -265,7 +266,7 @@ Gluing glue(Index vertices, const FaceList& faces, NonManifold non_manifold, std
 
 void check_positions(std::span<const Vec3> points) {
   if (points.size() > static_cast<std::size_t>(std::numeric_limits<Index>::max() / 2))
-    throw InvalidGeometry("the mesh has " + std::to_string(points.size()) + " vertices; at most 2^30 are supported");
+    throw InvalidGeometry("the mesh has " + detail::counted(points.size(), "vertex") + "; at most 2^30 are supported");
   for (std::size_t v = 0; v < points.size(); ++v)
     for (double x : points[v])
       if (!std::isfinite(x))
@@ -379,8 +380,8 @@ void GluedMesh::number_vertices(NonManifold non_manifold) {
   report_.added_vertices = static_cast<Index>(fans.later.size());
   if (fans.pinched.count() > 0 && non_manifold == NonManifold::error)
     throw InvalidGeometry("non_manifold_vertices",
-                          std::to_string(fans.pinched.count()) +
-                              " vertices join several fans of faces (bow ties): " + fans.pinched.text(),
+                          detail::counted(fans.pinched.count(), "vertex", "join") +
+                              " several fans of faces (bow ties): " + fans.pinched.text(),
                           "repair them, or split them with NonManifold::split");
   std::vector<Index> vertex_of_fan(fans.corner.size(), -1);
   auto number = [&](Index fan, Index input) {

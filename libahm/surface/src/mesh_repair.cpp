@@ -11,6 +11,7 @@
 #include "ahm/surface/gluing.hpp"
 #include "ahm/util/disjoint_sets.hpp"
 #include "ahm/util/small_math.hpp"
+#include "ahm/util/text.hpp"
 #include "ahm/util/vec.hpp"
 #include "ahm/util/weld.hpp"
 
@@ -196,8 +197,8 @@ RepairedSurface::RepairedSurface(std::unique_ptr<const Surface> built, std::vect
     : built_(std::move(built)), positions_(std::move(positions)), mesh_(std::move(mesh)) {
   const auto rows = static_cast<std::size_t>(built_->rows().row_count());
   if (rows != mesh_.joined.size() || rows != positions_.size())
-    throw InvalidArgument("the surface has " + std::to_string(rows) + " rows, the repaired mesh " +
-                          std::to_string(mesh_.joined.size()) + " vertices and " + std::to_string(positions_.size()) +
+    throw InvalidArgument("the surface has " + detail::counted(rows, "row") + ", the repaired mesh " +
+                          detail::counted(mesh_.joined.size(), "vertex") + " and " + std::to_string(positions_.size()) +
                           " positions; these numbers must agree");
   rows_ = rows_of(*built_, mesh_);
 }

@@ -396,7 +396,7 @@ Sample Surface::sample_in_face(const LogMap& map, const FacePoint& point) const 
 
 void Surface::check_map(const LogMap& map) const {
   if (map.size() != graph().size() || map.dimension() != 2)
-    throw InvalidArgument("the map has " + std::to_string(map.size()) + " vertices in dimension " +
+    throw InvalidArgument("the map has " + detail::counted(map.size(), "vertex") + " in dimension " +
                           std::to_string(map.dimension()) + ", this surface's graph has " +
                           std::to_string(graph().size()) + " in dimension 2: the map belongs to another graph");
 }
@@ -406,8 +406,8 @@ std::vector<double> to_rows(const RowLogMap& rows, std::span<const double> value
   result.reserve(rows.vertex.size());
   for (const std::optional<Vertex>& vertex : rows.vertex) {
     if (vertex && static_cast<std::size_t>(vertex->index) >= values.size())
-      throw InvalidArgument("to_rows: there are " + std::to_string(values.size()) +
-                            " values, but the map uses vertex " + std::to_string(vertex->index));
+      throw InvalidArgument("to_rows: there are " + detail::counted(values.size(), "value") +
+                            ", but the map uses vertex " + std::to_string(vertex->index));
     result.push_back(vertex ? values[vertex->index] : nan);
   }
   return result;

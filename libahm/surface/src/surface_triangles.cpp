@@ -10,6 +10,7 @@
 #include "ahm/graph/components.hpp"
 #include "ahm/surface/exact/flat_triangles.hpp"
 #include "ahm/util/small_math.hpp"
+#include "ahm/util/text.hpp"
 #include "ahm/util/vec.hpp"
 
 namespace ahm {
@@ -20,7 +21,7 @@ void check(const char* function, const TangentGraph& graph, const LogMap& map) {
   if (graph.dimension() != 2)
     throw InvalidArgument(name + "the graph has dimension " + std::to_string(graph.dimension()) + ", not 2");
   if (map.size() != graph.size() || map.dimension() != 2)
-    throw InvalidArgument(name + "the map has " + std::to_string(map.size()) + " vertices, the graph " +
+    throw InvalidArgument(name + "the map has " + detail::counted(map.size(), "vertex") + ", the graph " +
                           std::to_string(graph.size()));
   if (map.frames().size() != 4 * to_size(graph.size()))
     throw InvalidArgument("map_without_frames", name + "the map has no frames", "solve with MapOptions::frames = true");

@@ -5,6 +5,7 @@
 
 #include "ahm/error.hpp"
 #include "ahm/pcl/filters.hpp"
+#include "ahm/util/text.hpp"
 #include "float_cloud.hpp"
 
 namespace ahm::pcl_bridge {
@@ -12,8 +13,8 @@ namespace ahm::pcl_bridge {
 std::vector<Vec3> estimate_normals(std::span<const Vec3> points, int k, unsigned threads) {
   if (k < 3) throw InvalidArgument("estimate_normals: k is " + std::to_string(k) + ", must be at least 3");
   if (points.size() < 3)
-    throw InvalidArgument("estimate_normals: points has " + std::to_string(points.size()) +
-                          " elements, needs at least 3");
+    throw InvalidArgument("estimate_normals: points has " + detail::counted(points.size(), "element") +
+                          ", needs at least 3");
   const FloatCloud input = to_float_cloud(points, "estimate_normals");
   ::pcl::NormalEstimationOMP<::pcl::PointXYZ, ::pcl::Normal> estimation(threads);
   estimation.setInputCloud(input.cloud);

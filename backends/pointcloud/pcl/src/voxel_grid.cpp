@@ -8,6 +8,7 @@
 
 #include "ahm/error.hpp"
 #include "ahm/pcl/filters.hpp"
+#include "ahm/util/text.hpp"
 #include "float_cloud.hpp"
 
 namespace ahm::pcl_bridge {
@@ -72,7 +73,7 @@ std::vector<Index> ranks(const std::vector<unsigned>& numbers, std::size_t expec
   std::sort(distinct.begin(), distinct.end());
   distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
   if (distinct.size() != expected)
-    throw Error("voxel_grid: PCL returned " + std::to_string(expected) + " voxels, but " +
+    throw Error("voxel_grid: PCL returned " + detail::counted(expected, "voxel") + ", but " +
                 std::to_string(distinct.size()) + " are occupied");
   std::vector<Index> result;
   result.reserve(numbers.size());
@@ -105,8 +106,8 @@ ReducedCloud voxel_grid(std::span<const Vec3> points, std::span<const Vec3> norm
   if (!(size > 0) || !std::isfinite(size))
     throw InvalidArgument("voxel_grid: size is " + text(size) + ", must be finite and > 0");
   if (!normals.empty() && normals.size() != points.size())
-    throw InvalidArgument("voxel_grid: normals has " + std::to_string(normals.size()) + " elements for " +
-                          std::to_string(points.size()) + " points");
+    throw InvalidArgument("voxel_grid: normals has " + detail::counted(normals.size(), "element") + " for " +
+                          detail::counted(points.size(), "point"));
   const FloatCloud input = to_float_cloud(points, "voxel_grid");
   if (points.empty()) return {};
   require_representable(input, size);

@@ -7,6 +7,7 @@
 
 #include "ahm/applications/atlas.hpp"
 #include "ahm/util/small_math.hpp"
+#include "ahm/util/text.hpp"
 
 #define STB_RECT_PACK_IMPLEMENTATION
 #define STBRP_STATIC
@@ -62,9 +63,9 @@ double largest_scale(const std::vector<ChartBox>& boxes, const PackOptions& opti
   for (double scale = high; low == 0 && scale > 1e-4 * high; scale /= 2)
     if (place(boxes, scale, options.size, options.margin)) low = scale;
   if (low == 0)
-    throw InvalidArgument(std::to_string(boxes.size()) + " charts with margins of " + std::to_string(options.margin) +
-                          " texels do not fit into a texture of " + std::to_string(options.size) +
-                          "; enlarge size, or lower margin or the number of charts");
+    throw InvalidArgument("the charts (" + std::to_string(boxes.size()) + ") with margins of " +
+                          detail::counted(options.margin, "texel") + " do not fit into a texture of " +
+                          std::to_string(options.size) + "; enlarge size, or lower margin or the number of charts");
   high = std::min(high, 2 * low);
   while (high > 1.01 * low) {
     const double middle = (low + high) / 2;

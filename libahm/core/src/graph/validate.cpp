@@ -29,7 +29,7 @@ void check_star_shape(const Star& s, Index i, int dimension, std::size_t transpo
                        ", the graph has " + std::to_string(dimension));
   if (s.weights.size() != degree || s.logs.size() != degree * d || s.transports.size() != degree * transport_width)
     throw InvalidGraph("star of vertex " + std::to_string(i) + ": weights, logs or transports do not match its " +
-                       std::to_string(degree) + " neighbors in length");
+                       detail::counted(degree, "neighbor") + " in length");
 }
 
 /// @return the degree
@@ -113,7 +113,7 @@ class ReverseEdgeCheck {
                                        : ": the reverse edge is missing or has another weight"));
     }
     if (edges.size() != backward)
-      throw InvalidGraph(edge_name(j, i) + ": " + std::to_string(backward) + " edges, but " +
+      throw InvalidGraph(edge_name(j, i) + ": " + detail::counted(backward, "edge") + ", but " +
                          std::to_string(edges.size()) + " in the other direction");
   }
 

@@ -6,6 +6,7 @@
 #include "ahm/error.hpp"
 #include "ahm/graph/components.hpp"
 #include "ahm/util/memory.hpp"
+#include "ahm/util/text.hpp"
 #include "cholesky/blas.hpp"
 #include "heat/component_scales.hpp"
 #include "heat/heat_system.hpp"
@@ -21,7 +22,7 @@ struct HeatOperators::Impl {
 };
 
 HeatOperators::HeatOperators(const TangentGraph& graph, const FactorOptions& options) {
-  detail::with_memory_check("factoring a graph of " + std::to_string(graph.size()) + " vertices", [&] {
+  detail::with_memory_check("factoring a graph of " + detail::counted(graph.size(), "vertex"), [&] {
     check_diffusion(graph, options);
     ComponentScales scales(graph);
     auto system = factored_system(graph, diffusion_times(scales, options.t_coef), options);
@@ -52,13 +53,14 @@ Index HeatOperators::component_count() const noexcept { return impl_->components
 
 void HeatOperators::solve_scalar(std::span<double> X, Index columns, unsigned threads) const {
   if (columns < 0 || static_cast<Offset>(X.size()) != static_cast<Offset>(impl_->n) * columns)
-    throw InvalidArgument("solve_scalar: 'X' has " + std::to_string(X.size()) + " numbers, expected n x columns");
+    throw InvalidArgument("solve_scalar: 'X' has " + detail::counted(X.size(), "number") + ", expected n x columns");
   if (columns > 0) detail::with_memory_check("solving with A", [&] { impl_->system->solve_A(X, columns, threads); });
 }
 
 void HeatOperators::solve_vector(std::span<double> X, Index columns, unsigned threads) const {
   if (columns < 0 || static_cast<Offset>(X.size()) != static_cast<Offset>(impl_->n) * impl_->d * columns)
-    throw InvalidArgument("solve_vector: 'X' has " + std::to_string(X.size()) + " numbers, expected n x d x columns");
+    throw InvalidArgument("solve_vector: 'X' has " + detail::counted(X.size(), "number") +
+                          ", expected n x d x columns");
   if (columns > 0) detail::with_memory_check("solving with B", [&] { impl_->system->solve_B(X, columns, threads); });
 }
 

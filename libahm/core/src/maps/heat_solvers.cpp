@@ -9,6 +9,7 @@
 #include "ahm/maps/cost.hpp"
 #include "ahm/util/memory.hpp"
 #include "ahm/util/parallel.hpp"
+#include "ahm/util/text.hpp"
 #include "heat/heat_system.hpp"
 #include "maps/affine_heat.hpp"
 #include "maps/one_rings.hpp"
@@ -99,7 +100,7 @@ LogMap MarchSolver::continue_from(AffineHeat& heat, std::size_t s, const Source&
 const HeatOperators& GlobalSolver::operators(const Progress& progress) const {
   std::call_once(once_, [&] {
     const HeatGraph& heat = heat_graph_;
-    detail::with_memory_check("factoring a graph of " + std::to_string(heat.graph.size()) + " vertices", [&] {
+    detail::with_memory_check("factoring a graph of " + detail::counted(heat.graph.size(), "vertex"), [&] {
       HeatOptions quiet = heat.options;
       quiet.progress = progress;
       operators_ = HeatOperatorsAccess::make(

@@ -53,7 +53,7 @@ struct LogMapSolver::Impl {
 void LogMapSolver::Impl::check_memory_of_factors() const {
   check_memory(estimate_cost(heat_graph.size(), Strategy::global).bytes,
                heat_graph.options.memory > 0 ? static_cast<double>(heat_graph.options.memory) : machine_memory(),
-               "the factors of all " + std::to_string(heat_graph.graph.size()) + " vertices do not fit into memory",
+               "the factors of all " + detail::counted(heat_graph.graph.size(), "vertex") + " do not fit into memory",
                "simplify the surface or cut out the part of interest");
 }
 
@@ -63,8 +63,8 @@ void LogMapSolver::Impl::check_memory_of_maps(std::size_t count, const MapSettin
   const double numbers = d + (map.distances ? 1 : 0) + (map.spread ? 1 : 0) + (map.frames ? d * d : 0);
   check_memory(static_cast<double>(count) * heat_graph.graph.size() * (numbers * sizeof(double) + sizeof(Status)),
                machine_memory(),
-               std::to_string(count) + " maps of " + std::to_string(heat_graph.graph.size()) +
-                   " vertices do not fit into memory",
+               detail::counted(count, "map") + " of " + detail::counted(heat_graph.graph.size(), "vertex") +
+                   " do not fit into memory",
                "solve fewer at a time, or use local maps");
 }
 

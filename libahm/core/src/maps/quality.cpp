@@ -11,6 +11,7 @@
 #include "ahm/maps/straight_line.hpp"
 #include "ahm/util/parallel.hpp"
 #include "ahm/util/small_math.hpp"
+#include "ahm/util/text.hpp"
 #include "ahm/util/vec.hpp"
 #include "heat/component_scales.hpp"
 
@@ -72,7 +73,7 @@ double error_of_heat(const LogMap& map, const Wavefront* front, Index vertex, st
 
 void check_map(const TangentGraph& graph, const LogMap& map) {
   if (map.size() != graph.size() || map.dimension() != graph.dimension())
-    throw InvalidArgument("map_quality: the map has " + std::to_string(map.size()) + " vertices, the graph " +
+    throw InvalidArgument("map_quality: the map has " + detail::counted(map.size(), "vertex") + ", the graph " +
                           std::to_string(graph.size()));
   if (map.source().is_curve() && (map.dimension() != 2 || map.nearest().size() != map.status().size()))
     throw InvalidArgument("map_quality: a map from a curve must have dimension 2 and contain the nearest samples");

@@ -358,7 +358,7 @@ class Tracer {
   void check_count(double walked_length) const {
     if (path_.points.size() < max_crossings) return;
     throw InvalidArgument("line_too_long",
-                          "the line crosses more than " + std::to_string(max_crossings) + " sides within " +
+                          "the line crosses more than " + detail::counted(max_crossings, "side") + " within " +
                               detail::number(walked_length) + " of its length " + detail::number(length_) +
                               ", near face " + std::to_string(path_.points.back().face),
                           "choose a smaller length, or repair the needle triangles there");
