@@ -7,6 +7,7 @@
 
 #include "ahm/error.hpp"
 #include "ahm/pointcloud/neighbor_search.hpp"
+#include "ahm/util/text.hpp"
 #include "ahm/util/vec.hpp"
 #include "cli/source_list.hpp"
 #ifdef AHM_WITH_PCL
