@@ -91,7 +91,7 @@ inline void add_local_options(CLI::App& app, LocalArguments& a) {
   app.add_option("folder", a.folder, "folder of the tiles")->required();
   app.add_option("-o,--output", a.output, "output folder for the maps")->required();
   app.add_option("--radius", a.options.maps.radius, "radius of each map")->required();
-  app.add_option("--nearest", a.options.maps.nearest, "keep only this many nearest vertices of each map; 0: all")
+  app.add_option("--k", a.options.maps.k, "keep only the K nearest vertices of each map; 0: all")
       ->capture_default_str();
   app.add_option("--feature", a.options.features,
                  "write features instead of maps: count, area, curvature, mean:FILE.npy (mean of one number per row of "

@@ -34,7 +34,7 @@ RowLocalMaps of_all_rows(const Body& body, const LocalMapOptions& options) {
 LocalMapOptions local_options(const py::dict& options) {
   LocalMapOptions o;
   read(options, "radius", o.radius);
-  read(options, "k", o.nearest);
+  read(options, "k", o.k);
   read(options, "margin", o.margin);
   o.heat = heat_options(options).diffusion();
   return o;

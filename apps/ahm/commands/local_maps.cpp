@@ -40,9 +40,9 @@ struct LocalMapsOptions {
   SolveOptions solve;
   OutputOptions output;
   double radius = 0;
-  Index nearest = 0;            ///< neighbors per source; 0: all
+  Index k = 0;                  ///< neighbors per source; 0: all
   std::string sources = "all";  ///< all, or a file of row numbers
-  bool pad = false;             ///< write `nearest` entries per source and a mask instead of compressed rows
+  bool pad = false;             ///< write `k` entries per source and a mask instead of compressed rows
   bool float32 = false;
 };
 
@@ -105,7 +105,7 @@ std::vector<T> padded(const RowLocalMaps& maps, const std::vector<T>& values, st
 void write(const LocalMapsOptions& options, const RowLocalMaps& maps, const std::vector<Row>& rows,
            const TangentGraph& graph, const std::vector<Vertex>& vertices) {
   const std::size_t sources = rows.size(), entries = maps.neighbors.size();
-  const auto k = static_cast<std::size_t>(options.nearest);
+  const auto k = static_cast<std::size_t>(options.k);
   const auto real = options.float32 ? io::NpyType::float32 : io::NpyType::float64;
   const auto complex = options.float32 ? io::NpyType::complex64 : io::NpyType::complex128;
   const bool rotations = maps.kind == TransportKind::rotation2;
@@ -157,7 +157,7 @@ void comment_on_lonely(const RowLocalMaps& maps, const LocalMapsOptions& options
                        Journal& journal) {
   Index lonely = 0;
   for (Index s = 0; s < maps.sources(); ++s) lonely += maps.indptr[s + 1] - maps.indptr[s] == 1;
-  if (options.radius > 0 && options.nearest != 1 && 2 * lonely > maps.sources())
+  if (options.radius > 0 && options.k != 1 && 2 * lonely > maps.sources())
     journal.add_warning(fmt::format(
         "--radius {}: neighborhoods without neighbors: {} of {}; the mean edge length is {:.4g}, raise --radius",
         options.radius, lonely, maps.sources(), input.mean_edge_length()));
@@ -177,7 +177,7 @@ void run(const LocalMapsOptions& options) {
   journal.start("solve");
   LocalMapOptions map_options;
   map_options.radius = options.radius;
-  map_options.nearest = options.nearest;
+  map_options.k = options.k;
   map_options.heat = options.solve.diffusion();
   map_options.memory = options.solve.memory;
   map_options.heat.progress = journal.progress();
@@ -205,7 +205,7 @@ void offer(CLI::App& app, LocalMapsOptions& o) {
   add_input(app, o.input);
   add_parsed(app, "--radius", o.radius, parse_positive, "R", "Radius of the neighborhoods, along the surface");
   add_output(app, o.output)->required()->description("Output file, .npz");
-  add_parsed(app, "--k", o.nearest, integer_parser(1), "K",
+  add_parsed(app, "--k", o.k, integer_parser(1), "K",
              "Keep the K nearest vertices, including the source; without --radius at any distance");
   add_parsed(app, "--sources", o.sources, non_empty, "all|FILE",
              "all (default), or a file with row numbers of INPUT, counted from 0");
@@ -221,8 +221,8 @@ void offer(CLI::App& app, LocalMapsOptions& o) {
   add_json(app, o.output);
   add_verbosity(app, o.output.verbosity);
   app.callback([&o] {
-    if (o.radius == 0 && o.nearest == 0) throw CLI::RequiredError("--radius, or --k");
-    if (o.pad && o.nearest == 0) throw CLI::ValidationError("--pad", "requires --k");
+    if (o.radius == 0 && o.k == 0) throw CLI::RequiredError("--radius, or --k");
+    if (o.pad && o.k == 0) throw CLI::ValidationError("--pad", "requires --k");
   });
 }
 

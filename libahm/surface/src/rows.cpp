@@ -112,18 +112,18 @@ RowLocalMaps to_rows(const Surface& surface, std::span<const From> sources, cons
   const bool all_on_rows = !has_virtual_vertices(rows);
   LocalMapOptions wanted = options;
   wanted.bound_by_straight_line = true;
-  if (!all_on_rows && options.radius > 0) wanted.nearest = 0;
+  if (!all_on_rows && options.radius > 0) wanted.k = 0;
   while (true) {
     LocalMaps all = local_maps(surface.graph(), sources, wanted);
     const std::vector<Offset> found = all.indptr;
-    RowLocalMaps maps = keep_rows(std::move(all), rows, options.nearest);
-    if (all_on_rows || options.radius > 0 || wanted.nearest >= rows.vertex_count()) return maps;
+    RowLocalMaps maps = keep_rows(std::move(all), rows, options.k);
+    if (all_on_rows || options.radius > 0 || wanted.k >= rows.vertex_count()) return maps;
     // Some of the nearest vertices may be virtual. Then more are requested, as long as there are more.
     bool enough = true;
     for (std::size_t s = 0; s < sources.size() && enough; ++s)
-      enough = maps.indptr[s + 1] - maps.indptr[s] == options.nearest || found[s + 1] - found[s] < wanted.nearest;
+      enough = maps.indptr[s + 1] - maps.indptr[s] == options.k || found[s + 1] - found[s] < wanted.k;
     if (enough) return maps;
-    wanted.nearest = std::min(2 * wanted.nearest, rows.vertex_count());
+    wanted.k = std::min(2 * wanted.k, rows.vertex_count());
   }
 }
 

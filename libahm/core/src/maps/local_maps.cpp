@@ -106,12 +106,12 @@ constexpr double usual_detour = 1.2;
 constexpr double largest_detour = 2;
 
 void check(const TangentGraph& graph, std::span<const Source> sources, const LocalMapOptions& options) {
-  if (options.nearest < 0)
-    throw InvalidArgument("nearest is " + std::to_string(options.nearest) + "; it must be >= 0 (0: all)");
-  const bool by_number = options.radius == 0 && options.nearest > 0;
+  if (options.k < 0)
+    throw InvalidArgument("k is " + std::to_string(options.k) + "; it must be >= 0 (0: all)");
+  const bool by_number = options.radius == 0 && options.k > 0;
   if (!by_number && (!(options.radius > 0) || !std::isfinite(options.radius)))
     throw InvalidArgument("radius is " + detail::number(options.radius) +
-                          "; it must be finite and > 0, or 0 if `nearest` is > 0");
+                          "; it must be finite and > 0, or 0 if `k` is > 0");
   check_patches(graph, sources, options.heat, options.margin);
 }
 
@@ -126,7 +126,7 @@ std::vector<double> radii_of(const TangentGraph& graph, std::span<const Source> 
     Index count = 0;
     ball.grow(sources[s].vertices(), std::numeric_limits<double>::infinity(), [&](Index, double distance) {
       radii[s] = std::max(distance, graph.mean_edge_length() / 4) * graph.length_unit();
-      return ++count < options.nearest;
+      return ++count < options.k;
     });
   }
   return radii;
@@ -154,7 +154,7 @@ void check_memory(const TangentGraph& graph, std::span<const Source> sources, st
     const std::size_t s = (2 * k + 1) * sources.size() / (2 * samples);
     double count = 0;
     ball.grow(sources[s].vertices().first(1), radii[s] / graph.length_unit(), [&](Index, double) {
-      return options.nearest == 0 || count < options.nearest ? ++count <= enough : false;
+      return options.k == 0 || count < options.k ? ++count <= enough : false;
     });
     counts.push_back(count);
   }
@@ -216,7 +216,7 @@ class Worker {
   enum class Outcome {
     complete,
     patch_too_small,   ///< the patch does not contain all vertices within `wanted` of a source
-    radius_too_small,  ///< fewer vertices than `LocalMapOptions::nearest` lie within the radius
+    radius_too_small,  ///< fewer vertices than `LocalMapOptions::k` lie within the radius
   };
 
   /// Unfolds the distances on the patch from the sources where this is possible. So a patch that is too small is detected before its
@@ -266,7 +266,7 @@ class Worker {
     for (Index k : patch.edge)
       if (distance[k] < wanted * (1 - 1e-9)) return Outcome::patch_too_small;
     if (options_.radius > 0 || patch.edge.empty()) return Outcome::complete;
-    return std::ranges::count_if(distance, [&](double d) { return d <= radius; }) < options_.nearest
+    return std::ranges::count_if(distance, [&](double d) { return d <= radius; }) < options_.k
                ? Outcome::radius_too_small
                : Outcome::complete;
   }
@@ -320,8 +320,8 @@ class Worker {
     const Outcome outcome = judge(patch, distance, wanted, radius);
     if (outcome != Outcome::complete) return outcome;
     std::sort(order_.begin(), order_.end());
-    if (options_.nearest > 0 && order_.size() > static_cast<std::size_t>(options_.nearest))
-      order_.resize(static_cast<std::size_t>(options_.nearest));
+    if (options_.k > 0 && order_.size() > static_cast<std::size_t>(options_.k))
+      order_.resize(static_cast<std::size_t>(options_.k));
 
     for (const auto& [vertex, known] : SourceVertices(patch.sources[m], graph_.dimension()))
       std::copy(known.vector.begin(), known.vector.end(), phi_.begin() + static_cast<std::ptrdiff_t>(vertex * d_));

@@ -32,14 +32,14 @@ std::vector<double> local_coordinates(const TangentGraph& graph, std::span<const
                                       const DiffusionOptions& heat = {}, double margin = 16);
 
 struct LocalMapOptions {
-  double radius = 0;  ///< world units, finite and > 0; 0: no limit, requires `nearest` > 0
+  double radius = 0;  ///< world units, finite and > 0; 0: no limit, requires `k` > 0
   /// The number of nearest neighbors to keep, including the source's own vertex; 0: all within the radius. The result has fewer if the
   /// radius or the component contains fewer.
-  Index nearest = 0;
+  Index k = 0;
   /// How far each patch extends beyond the radius, in units of sqrt(tau). Flat patches are exact at any margin. Other patches differ from
   /// the map of the whole graph by about 1e-5 of the radius at 2, ten times less at 3, and so on (docs/results/local_maps.md).
   double margin = 2;
-  /// Increase distances that are shorter than the straight line in space to its length, as in results by row. The radius and `nearest`
+  /// Increase distances that are shorter than the straight line in space to its length, as in results by row. The radius and `k`
   /// apply to the increased distances. Ignored if the graph has no frames.
   bool bound_by_straight_line = false;
   DiffusionOptions heat = {};  ///< the mean edge length h is measured on the whole graph

@@ -18,7 +18,7 @@ namespace ahm {
 using RowLocalMaps = LocalMapsOf<Row>;
 
 /// `local_maps` with rows as neighbors: each vertex is replaced by its first row. Vertices without a row, as inside refined
-/// polygons, are omitted; `LocalMapOptions::nearest` counts the remaining ones. Distances are at least the straight-line
+/// polygons, are omitted; `LocalMapOptions::k` counts the remaining ones. Distances are at least the straight-line
 /// distance, as in `RowLogMap`.
 /// @throws as `local_maps`
 RowLocalMaps row_local_maps(const Surface& surface, std::span<const Vertex> sources, const LocalMapOptions& options);
