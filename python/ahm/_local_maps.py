@@ -150,8 +150,8 @@ def local_maps(surface: Any, radius: Optional[float] = None, k: Optional[int] = 
 
     >>> import ahm
     >>> maps = ahm.local_maps(ahm.shapes.plane(9, 9), radius=1.5, k=9)
-    >>> neighbours = maps.indices[maps.indptr[40] : maps.indptr[41]]
-    >>> sorted(neighbours.tolist())
+    >>> neighbors = maps.indices[maps.indptr[40] : maps.indptr[41]]
+    >>> sorted(neighbors.tolist())
     [30, 31, 32, 39, 40, 41, 48, 49, 50]
     >>> maps.csr().shape, maps.padded().log.shape
     ((81, 81), (81, 9, 2))

@@ -196,7 +196,7 @@ void run(const LocalMapsOptions& options) {
   if (options.radius > 0) j["radius"] = options.radius;
   j["sources"] = wanted.size();
   j["entries"] = maps.neighbors.size();
-  j["mean_neighbours"] = mean;
+  j["mean_neighbors"] = mean;
   deliver(j, fmt::format("{} with {:.1f} vertices on average\n", counted(wanted.size(), "neighborhood"), mean),
           options.output, journal);
 }

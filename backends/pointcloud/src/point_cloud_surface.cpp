@@ -260,7 +260,7 @@ PointCloudSurface PointCloudSurface::build(std::span<const Vec3> input, std::spa
       points, [&](std::size_t i) { return kept.row(i).index; }, options, details);
   auto search = options.search ? options.search(cloud.points) : nullptr;
   if (!search) throw InvalidArgument("options.search returned no neighbor search; use nanoflann_search, the default");
-  options.progress.step("neighbours", 0.0);
+  options.progress.step("neighbors", 0.0);
   details.k_asked = options.k.value_or(default_neighbors);
   auto [neighborhoods, planes, parts, noise, typical_noise, merged] =
       find_noisy_planes(cloud, normals, search, options);

@@ -366,7 +366,7 @@ Neighborhoods find_neighborhoods(const CleanPoints& cloud, const NeighborSearch&
   });
   for (int round = 0; round < reach_rounds && !drop_unreachable(cloud, options, counts, result); ++round) continue;
   compact(counts, result);
-  options.progress.step("neighbours", 1.0);
+  options.progress.step("neighbors", 1.0);
   return result;
 }
 

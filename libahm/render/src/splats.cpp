@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 
 constexpr std::size_t ring_size = splat_ring;
-constexpr std::size_t neighbours_for_normal = 12;
+constexpr std::size_t neighbors_for_normal = 12;
 
 struct Local {
   float radius = 0;
@@ -91,9 +91,9 @@ class Splatter {
     const Vector3d given = scene_.normals.empty() ? Vector3d::Zero().eval() : as_vector(scene_.normals[i]).eval();
     const bool estimate = !given.allFinite() || !(given.norm() > 0);
 
-    std::array<Index, neighbours_for_normal> index;
-    std::array<double, neighbours_for_normal> squared;
-    const std::size_t wanted = estimate ? neighbours_for_normal : ring_size + 1;
+    std::array<Index, neighbors_for_normal> index;
+    std::array<double, neighbors_for_normal> squared;
+    const std::size_t wanted = estimate ? neighbors_for_normal : ring_size + 1;
     const auto found = static_cast<std::size_t>(
         search.nearest(points_[k], std::span(index).first(wanted), std::span(squared).first(wanted)));
     if (estimate && found <= ring_size) {

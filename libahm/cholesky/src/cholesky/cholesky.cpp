@@ -113,10 +113,11 @@ std::vector<double> CholeskyFactor::checked_solve(const SparseUpper& matrix, std
   std::vector<double> residual = multiply(matrix, x);
   for (std::size_t i = 0; i < b.size(); ++i) residual[i] -= b[i];
   if (!std::isfinite(scale) || !(largest(residual) <= 1e-10 * scale))
-    throw NotPositiveDefinite("ill_conditioned",
-                              std::string("operator ") + name + ": the factorization fails its residual check (" +
-                                  detail::number(largest(residual) / scale) + " relative)",
-                              "the graph is too ill-conditioned");
+    throw NotPositiveDefinite(
+        "ill_conditioned",
+        std::string("operator ") + name + ": the factorization fails its residual check (" +
+            detail::number(largest(residual) / scale) + " relative)",
+        "remove nearly dependent rows, or scale entries that differ by more than a factor of 1e10");
   return x;
 }
 

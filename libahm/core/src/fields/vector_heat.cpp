@@ -9,6 +9,7 @@
 #include "ahm/util/memory.hpp"
 #include "ahm/util/parallel.hpp"
 #include "ahm/util/small_math.hpp"
+#include "ahm/util/text.hpp"
 #include "maps/affine_heat.hpp"
 
 namespace ahm {
@@ -65,9 +66,14 @@ void finish(VertexField& field, const LogMapSolver& solver, const Source& source
 }
 
 void check_values(std::span<const double> values, std::size_t expected, const char* name) {
-  if (values.size() != expected || !all_finite(values))
-    throw InvalidArgument(std::string("'") + name + "' must be " + std::to_string(expected) + " finite numbers, not " +
-                          std::to_string(values.size()) + " (or one is not finite)");
+  const std::string start = std::string("'") + name + "'";
+  if (values.size() != expected)
+    throw InvalidArgument(start + " has " + detail::counted(values.size(), "number") + ", not " +
+                          std::to_string(expected));
+  for (std::size_t k = 0; k < values.size(); ++k)
+    if (!std::isfinite(values[k]))
+      throw InvalidArgument(start + "[" + std::to_string(k) + "] is " + detail::number(values[k]) +
+                            "; it must be finite");
 }
 
 /// Weighted mean at each vertex: sum_k v_k h_k / sum_k h_k, with the heat h_k from sample k.

@@ -73,8 +73,9 @@ double error_of_heat(const LogMap& map, const Wavefront* front, Index vertex, st
 
 void check_map(const TangentGraph& graph, const LogMap& map) {
   if (map.size() != graph.size() || map.dimension() != graph.dimension())
-    throw InvalidArgument("map_quality: the map has " + detail::counted(map.size(), "vertex") + ", the graph " +
-                          std::to_string(graph.size()));
+    throw InvalidArgument("map_quality: the map has " + detail::counted(map.size(), "vertex") + " and dimension " +
+                          std::to_string(map.dimension()) + ", the graph " + detail::counted(graph.size(), "vertex") +
+                          " and dimension " + std::to_string(graph.dimension()));
   if (map.source().is_curve() && (map.dimension() != 2 || map.nearest().size() != map.status().size()))
     throw InvalidArgument("map_quality: a map from a curve must have dimension 2 and contain the nearest samples");
   if (map.spread().empty())

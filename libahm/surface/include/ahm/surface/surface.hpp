@@ -76,7 +76,7 @@ class Surface {
   /// The nearest point of the faces (polygons are split into fans from their first corner). Without faces: the nearest point of
   /// the tangent plane of the nearest row, within the distance of the row's farthest neighbor. The first call builds a search
   /// tree over the faces.
-  /// @throws InvalidArgument (no positions; not finite)
+  /// @throws InvalidArgument (no positions; not finite; no faces and no frames)
   ClosestPoint closest_point(const Vec3& position) const;
   /// Position of a point, world units. @throws InvalidArgument (a point that is not on this surface; no positions)
   Vec3 position(const SurfacePoint& point) const;

@@ -89,7 +89,7 @@ GeodesicPath shortened_path(const PolyhedralSurface& surface, std::span<const Me
 
 /// Pulls a closed curve taut: the result is locally shortest everywhere. It begins and ends at the same point, a vertex where
 /// it passes one. A curve that goes around nothing shrinks to a point, of length 0.
-/// @param curve  at least 3 points, as for `shortened_path`; the last one is joined to the first, or is the same
+/// @param curve  at least 2 different points, as for `shortened_path`; the last one is joined to the first, or is the same
 /// @throws InvalidArgument (as `shortened_path`)
 GeodesicPath shortened_loop(const PolyhedralSurface& surface, std::span<const MeshPoint> curve);
 
