@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -82,6 +83,10 @@ class Journal {
     for (const Warning& warning : warnings) add_warning(worded(warning));
   }
 
+  /// Records that the picture could not be written. `deliver` writes all other outputs, and then throws this message.
+  void add_view_failure(const std::string& text) { view_failure_ = text; }
+  const std::optional<std::string>& view_failure() const { return view_failure_; }
+
   Progress progress() { return display_.progress(); }
   void clear_display() { display_.clear(); }
   const StageTimes& times() const { return times_; }
@@ -94,6 +99,7 @@ class Journal {
   StageTimes times_;
   std::size_t reported_ = 0;
   std::vector<std::string> warnings_;
+  std::optional<std::string> view_failure_;
   ProgressDisplay display_;
 };
 

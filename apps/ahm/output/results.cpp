@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <new>
 
 #include "ahm/error.hpp"
 #include "ahm/io/formats.hpp"
@@ -169,7 +170,18 @@ render::Scene Results::scene(const RowLogMap& rows, const std::vector<double>& q
 void Results::write_view(const render::Scene& scene, Journal& journal, const render::PictureOptions& picture) {
   if (output_.view.empty()) return;
   journal.start("view");
-  draw(output_.view, scene, picture.pattern, output_.picture, threads_);
+  const auto fail = [&](std::string_view reason) {
+    journal.add_view_failure(fmt::format("--view {}: not written, {}", output_.view, reason));
+  };
+  try {
+    draw(output_.view, scene, picture.pattern, output_.picture, threads_);
+  } catch (const Cancelled&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    fail("out of memory");
+  } catch (const Error& error) {
+    fail(worded(error));
+  }
 }
 
 void Results::write(const io::Table& table, const render::Scene& scene, Journal& journal,

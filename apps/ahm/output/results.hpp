@@ -66,7 +66,7 @@ class Results {
   render::Scene scene() const;
   /// A scene of a map from a source. All arguments must outlive the scene.
   render::Scene scene(const RowLogMap& rows, const std::vector<double>& quality, const SurfaceSource& source) const;
-  /// Writes --view if it is set.
+  /// Writes --view if it is set. A failure does not prevent the other outputs (`Journal::add_view_failure`).
   void write_view(const render::Scene& scene, Journal& journal, const render::PictureOptions& picture = {});
   /// Writes --output, and --view if it is set.
   void write(const io::Table& table, const render::Scene& scene, Journal& journal,

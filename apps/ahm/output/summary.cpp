@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "ahm/error.hpp"
 #include "ahm/io/atomic_file.hpp"
 #include "cli/console.hpp"
 #include "cli/system_info.hpp"
@@ -25,6 +26,21 @@ nlohmann::ordered_json summary(const std::string& program, const std::string& pa
   return j;
 }
 
+namespace {
+
+/// @param text  text for users, before times and names of files
+void print_summary(const std::string& text, const OutputOptions& output, const Journal& journal) {
+  std::vector<std::string> wrote;
+  if (!output.output.empty() && !io::is_stream(output.output)) wrote.push_back(output.output);
+  if (!output.view.empty() && !journal.view_failure()) wrote.push_back(output.view);
+  const std::string all =
+      fmt::format("{}{:.2f} s, peak memory {}\n{}", text, journal.times().total(), bytes_as_text(peak_rss_bytes()),
+                  wrote.empty() ? "" : fmt::format("wrote {}\n", fmt::join(wrote, " and ")));
+  output.json == "-" || io::is_stream(output.output) ? print_to_stderr(all) : print(all);
+}
+
+}  // namespace
+
 void deliver(nlohmann::ordered_json summary, const std::string& text, const OutputOptions& output, Journal& journal,
              const nlohmann::ordered_json& extra) {
   journal.finish();
@@ -34,19 +50,18 @@ void deliver(nlohmann::ordered_json summary, const std::string& text, const Outp
   summary["seconds_total"] = journal.times().total();
   summary["peak_rss_bytes"] = peak_rss_bytes();
   summary.update(extra);
+  const std::optional<std::string>& failure = journal.view_failure();
+  if (failure) {
+    summary.erase("view");
+    summary["failed"]["view"] = *failure;
+  }
   const auto write_summary = [&] { write_json(output.json, summary, output.json_lines); };
   const bool is_json_on_stdout = output.json == "-";
   if (!is_json_on_stdout) write_summary();
   io::FileSet::commit();  // the files exist before their names are printed, even if printing fails
   if (is_json_on_stdout) write_summary();
-  if (output.verbosity == Verbosity::quiet) return;
-  std::vector<std::string> wrote;
-  if (!output.output.empty() && !io::is_stream(output.output)) wrote.push_back(output.output);
-  if (!output.view.empty()) wrote.push_back(output.view);
-  const std::string all =
-      fmt::format("{}{:.2f} s, peak memory {}\n{}", text, journal.times().total(), bytes_as_text(peak_rss_bytes()),
-                  wrote.empty() ? "" : fmt::format("wrote {}\n", fmt::join(wrote, " and ")));
-  output.json == "-" || io::is_stream(output.output) ? print_to_stderr(all) : print(all);
+  if (output.verbosity != Verbosity::quiet) print_summary(text, output, journal);
+  if (failure) throw IoError(*failure);
 }
 
 void deliver(nlohmann::ordered_json summary, const std::string& text, const OutputOptions& output, Journal& journal) {

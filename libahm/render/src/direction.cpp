@@ -5,7 +5,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "ahm/util/quantile.hpp"
@@ -118,11 +120,49 @@ class Cover {
  private:
   static constexpr std::size_t side = 64;
   static constexpr double width = 0.05;
+  /// Points farther than this from the center of the scene do not hide the map.
+  static constexpr double reach = 4, disc = std::numbers::pi * reach * reach;
+  static constexpr double most_points = 1e6;
 
-  /// Adds points on faces: on mapped ones, and on those without a coordinate at any corner. The points are dense enough to hit every cell.
+  struct FaceTriangle {
+    Vector3d a, b, c;
+
+    double area() const { return 0.5 * (b - a).cross(c - a).stableNorm(); }
+
+    /// Adds points of a lattice with the step, in a square with half side `reach` around the center of the scene. Its lines are parallel
+    /// to the side a c.
+    void add_points(double step, std::vector<Vector3d>& points) const {
+      const Vector3d side = c - a, along = side.stableNormalized();
+      const Vector3d rise = (b - a) - (b - a).dot(along) * along, across = rise.stableNormalized();
+      const double length = side.stableNorm(), height = rise.stableNorm();
+      if (!std::isfinite(length + height)) return;
+      const double rows = std::max(1.0, std::ceil(height / step)), columns = std::max(1.0, std::ceil(length / step));
+      const auto [first_row, last_row] = within(a.dot(across), height, rows, rows);
+      for (double i = first_row; i < last_row; ++i) {
+        const Vector3d start = a + (i + third) / rows * (b - a);
+        const auto [first, last] = within(start.dot(along), length, columns, std::ceil(columns * (1 - i / rows)));
+        for (double j = first; j < last; ++j) points.emplace_back(start + (j + third) / columns * side);
+      }
+    }
+
+   private:
+    static constexpr double third = 1.0 / 3;
+
+    /// The k from 0 up to `count` with |begin + (k + 1/3) length / parts| <= reach, as a half-open range.
+    static std::pair<double, double> within(double begin, double length, double parts, double count) {
+      if (!(length > 0)) return {0, std::min(count, 1.0)};
+      const auto place = [&](double x) { return (x - begin) / length * parts - third; };
+      return {std::max(0.0, std::ceil(place(-reach))), std::min(count, std::floor(place(reach)) + 1)};
+    }
+  };
+
+  /// Adds points on faces: on mapped ones, and on those without a coordinate at any corner. The points are dense enough to hit every cell,
+  /// unless that needs more than `most_points`.
   void add_faces(const Scene& scene, const Camera& camera) {
     const std::size_t faces = scene.face_begin.size() - 1, stride = faces / sample_size + 1;
     std::vector<Vector3d> corners;
+    std::vector<FaceTriangle> mapped, others;
+    double area = 0;
     for (std::size_t f = 0; f < faces; f += stride) {
       std::size_t known = 0;
       corners.clear();
@@ -132,19 +172,16 @@ class Cover {
         corners.push_back(camera.to_scene(scene.points[static_cast<std::size_t>(vertex)]));
       }
       if (known > 0 && known < corners.size()) continue;
-      std::vector<Vector3d>& points = known > 0 ? mapped_ : others_;
-      for (std::size_t k = 2; k < corners.size(); ++k) add_triangle(corners[0], corners[k - 1], corners[k], points);
+      for (std::size_t k = 2; k < corners.size(); ++k) {
+        const FaceTriangle triangle{corners[0], corners[k - 1], corners[k]};
+        area += std::min(triangle.area(), disc);
+        (known > 0 ? mapped : others).push_back(triangle);
+      }
     }
+    const double step = std::max(width, std::sqrt(area / most_points));
+    for (const FaceTriangle& triangle : mapped) triangle.add_points(step, mapped_);
+    for (const FaceTriangle& triangle : others) triangle.add_points(step, others_);
   }
-  static void add_triangle(const Vector3d& a, const Vector3d& b, const Vector3d& c, std::vector<Vector3d>& points) {
-    const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
-    if (!std::isfinite(longest)) return;
-    const double parts = std::max(1.0, std::ceil(longest / width));
-    for (double i = 0; i < parts; ++i)
-      for (double j = 0; i + j < parts; ++j)
-        points.emplace_back(a + (i + 1.0 / 3) / parts * (b - a) + (j + 1.0 / 3) / parts * (c - a));
-  }
-
   /// The cell of a raster of the picture that contains the projection of p; null outside. Cells have the size `width` at the center of the
   /// scene.
   double* cell(const Vector3d& p, const Vector3d& direction, const Vector3d& x, const Vector3d& y) {
