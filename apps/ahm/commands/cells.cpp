@@ -171,7 +171,7 @@ void run(const CellsOptions& options) {
   if (options.solve.method == Method::exact)
     geodesics.emplace(input.surface());
   else
-    front.emplace(graph, options.count > 0 ? Wavefront::one_rings(graph, options.input.threads) : nullptr);
+    front.emplace(graph, Wavefront::one_rings(graph, options.input.threads));
   if (options.count > 0) sources = spread(options, input, geodesics, front, journal);
 
   journal.start("cells");

@@ -47,7 +47,7 @@ std::vector<Vertex> candidates(Index vertices, Vertex first, Index count, std::s
 
 VoronoiCells voronoi_cells(const TangentGraph& graph, std::span<const Vertex> vertices) {
   return detail::with_memory_check("computing Voronoi cells", [&] {
-    Wavefront front(graph);
+    Wavefront front(graph, Wavefront::one_rings(graph, 0));
     return voronoi_cells(front, vertices);
   });
 }
@@ -102,7 +102,7 @@ VoronoiCells voronoi_cells(const ExactGeodesics& geodesics, std::span<const Vert
 std::vector<Vertex> farthest_points(const TangentGraph& graph, Vertex first, Index count, const Progress& progress,
                                     std::span<const Vertex> among) {
   return detail::with_memory_check("choosing farthest points", [&] {
-    Wavefront front(graph, Wavefront::one_rings(graph));
+    Wavefront front(graph, Wavefront::one_rings(graph, 0));
     return farthest_points(front, first, count, progress, among);
   });
 }

@@ -177,7 +177,8 @@ std::vector<double> SurfaceSolver::distance(const std::vector<Location>& sources
             .map;
     return by_row(surface().rows(), [&](Vertex v) { return map.distance(v); });
   }
-  Wavefront front(surface().graph());
+  const TangentGraph& graph = surface().graph();
+  Wavefront front(graph, std::isfinite(options.radius) ? nullptr : Wavefront::one_rings(graph, 0));
   for (const Location& source : sources) front.add(surface().source(source.on(surface())).source);
   options.progress.step("distance", 0);
   front.run(options.radius, options.progress.stop);

@@ -38,9 +38,12 @@ HeatGraph::HeatGraph(const TangentGraph& graph, const HeatOptions& options)
 std::shared_ptr<const Wavefront::OneRings> HeatGraph::one_rings(unsigned threads) const {
   if (!graph.is_delaunay()) return nullptr;
   std::call_once(once_, [&] {
-    std::vector<std::uint8_t> halved = halved_vertices(scales.components.of_vertex, scales.sizes);
-    one_rings_ =
-        std::make_shared<const Wavefront::OneRings>(graph, std::move(halved), strategy == Strategy::global, threads);
+    if (strategy == Strategy::global) {
+      one_rings_ = Wavefront::one_rings(graph, threads);
+    } else {
+      std::vector<std::uint8_t> halved = halved_vertices(scales.components.of_vertex, scales.sizes);
+      one_rings_ = std::make_shared<const Wavefront::OneRings>(graph, std::move(halved), false, threads);
+    }
   });
   return one_rings_;
 }

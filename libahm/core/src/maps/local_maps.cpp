@@ -106,8 +106,7 @@ constexpr double usual_detour = 1.2;
 constexpr double largest_detour = 2;
 
 void check(const TangentGraph& graph, std::span<const Source> sources, const LocalMapOptions& options) {
-  if (options.k < 0)
-    throw InvalidArgument("k is " + std::to_string(options.k) + "; it must be >= 0 (0: all)");
+  if (options.k < 0) throw InvalidArgument("k is " + std::to_string(options.k) + "; it must be >= 0 (0: all)");
   const bool by_number = options.radius == 0 && options.k > 0;
   if (!by_number && (!(options.radius > 0) || !std::isfinite(options.radius)))
     throw InvalidArgument("radius is " + detail::number(options.radius) +
@@ -153,9 +152,8 @@ void check_memory(const TangentGraph& graph, std::span<const Source> sources, st
   for (std::size_t k = 0; k < samples; ++k) {
     const std::size_t s = (2 * k + 1) * sources.size() / (2 * samples);
     double count = 0;
-    ball.grow(sources[s].vertices().first(1), radii[s] / graph.length_unit(), [&](Index, double) {
-      return options.k == 0 || count < options.k ? ++count <= enough : false;
-    });
+    ball.grow(sources[s].vertices().first(1), radii[s] / graph.length_unit(),
+              [&](Index, double) { return options.k == 0 || count < options.k ? ++count <= enough : false; });
     counts.push_back(count);
   }
   std::sort(counts.begin(), counts.end());

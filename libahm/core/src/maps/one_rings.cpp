@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "ahm/graph/components.hpp"
+#include "ahm/graph/graph_cache.hpp"
 #include "ahm/util/buckets.hpp"
 #include "ahm/util/parallel.hpp"
 #include "ahm/util/small_math.hpp"
@@ -357,8 +358,15 @@ void Wavefront::OneRings::find_cut_edges(Index vertex, std::vector<CutEdge>& edg
 std::shared_ptr<const Wavefront::OneRings> Wavefront::one_rings(const TangentGraph& graph, unsigned threads,
                                                                 bool midpoints) {
   if (graph.dimension() != 2) return nullptr;
-  std::vector<std::uint8_t> halved = midpoints ? halved_vertices(graph) : std::vector<std::uint8_t>();
-  return std::make_shared<const OneRings>(graph, std::move(halved), true, threads);
+  const auto make = [&]() -> std::shared_ptr<const OneRings> {
+    std::vector<std::uint8_t> halved = midpoints ? halved_vertices(graph) : std::vector<std::uint8_t>();
+    if (midpoints && std::ranges::find(halved, 1) == halved.end()) return one_rings(graph, threads, false);
+    return std::make_shared<const OneRings>(graph, std::move(halved), true, threads);
+  };
+  const GraphCache* const cache = graph.cache();
+  if (cache == nullptr) return make();
+  return cache->get<OneRings>(midpoints ? GraphCache::Kind::one_rings_with_midpoints : GraphCache::Kind::one_rings,
+                              make);
 }
 
 }  // namespace ahm

@@ -115,7 +115,7 @@ std::vector<double> quality_beside(const TangentGraph& graph, const LogMap& map,
 ReferenceFront::ReferenceFront(const TangentGraph& graph, const Source& source, double radius,
                                const std::stop_token& stop) {
   if (graph.is_delaunay()) return;
-  front_.emplace(graph, nullptr, true);
+  front_.emplace(graph, std::isfinite(radius) ? nullptr : Wavefront::one_rings(graph), true);
   front_->add(source);
   front_->run(reach * radius, stop);
 }

@@ -18,6 +18,7 @@
 #include <optional>
 #include <vector>
 
+#include "ahm/graph/graph_cache.hpp"
 #include "ahm/graph/tangent_graph.hpp"
 
 namespace ahm {
@@ -60,11 +61,13 @@ class CsrGraph final : public TangentGraph {
   double length_unit() const noexcept override { return data_.length_unit; }
   bool is_delaunay() const noexcept override { return data_.is_delaunay; }
   std::optional<Frame> frame(Index vertex) const override;
+  const GraphCache* cache() const noexcept override { return &cache_; }
 
   const CsrGraphData& data() const noexcept { return data_; }
 
  private:
   CsrGraphData data_;
+  GraphCache cache_;
 };
 
 }  // namespace ahm

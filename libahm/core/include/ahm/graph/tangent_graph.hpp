@@ -52,6 +52,8 @@ struct Frame {
   Vec3 normal;  ///< x cross y
 };
 
+class GraphCache;
+
 /// An immutable graph on n vertices whose tangent spaces are R^d (docs/concepts/graph_contract.md).
 ///
 /// Lengths (edge logs, square root of masses in d = 2, mean edge length) are in units of `length_unit()`.
@@ -84,6 +86,9 @@ class TangentGraph {
   /// Whether d = 2 and the edges are all the edges of an intrinsic Delaunay triangulation. If so, distances can be unfolded across its
   /// triangles (`Wavefront`).
   virtual bool is_delaunay() const noexcept { return false; }
+  /// Where solvers keep data that they compute from this graph, such as `Wavefront::one_rings`; null: nowhere. Graphs whose data never
+  /// changes may return one.
+  virtual const GraphCache* cache() const noexcept { return nullptr; }
   /// Tangent axes in ambient space, world units; nullopt if the backend has none.
   virtual std::optional<Frame> frame(Index) const { return std::nullopt; }
 };

@@ -44,8 +44,9 @@ namespace ahm {
 /// obstacles. On other graphs the distance is the length of the straight line.
 class Wavefront {
  public:
-  /// The one-rings of all vertices, computed once for many fronts: about 200 bytes per vertex.
+  /// The triangles around every vertex, which a front crosses. They take about 200 bytes per vertex.
   class OneRings;
+  /// Computes the one-rings of a graph once for many fronts. A `CsrGraph` keeps them, and returns the same ones at the next call.
   /// @param threads    0: one per core
   /// @param midpoints  whether to cut the triangles of small components at the midpoints of their sides
   static std::shared_ptr<const OneRings> one_rings(const TangentGraph& graph, unsigned threads = 1,
