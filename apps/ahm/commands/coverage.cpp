@@ -70,7 +70,7 @@ struct CoverageCommandOptions {
   SolveOptions solve;
   OutputOptions output;
   CoverageOptions path;
-  double min_quality = trusted_quality;
+  double min_quality = reliable_quality;
 };
 
 /// Writes a picture of the path on the map.

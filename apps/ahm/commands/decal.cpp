@@ -48,7 +48,7 @@ struct DecalCommandOptions {
   double size = 0;
   DecalOptions decal;
   std::optional<double> lift;
-  double min_quality = trusted_quality;
+  double min_quality = reliable_quality;
   bool alone = false;
 };
 

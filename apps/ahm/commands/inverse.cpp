@@ -36,7 +36,7 @@ struct InverseCommandOptions {
   SolveOptions solve;
   OutputOptions output;
   std::vector<std::array<double, 2>> points;
-  double min_quality = trusted_quality;
+  double min_quality = reliable_quality;
 };
 
 /// Writes the points. @return how many of them are on the surface

@@ -129,7 +129,9 @@ nlohmann::ordered_json as_json(const LogmapRun& run, const OutputOptions& output
   j["mean_edge_length"] = run.input.mean_edge_length();
   j["largest_distance"] = largest_distance(run.rows);
   for (Status s : all_statuses) j["status"][std::string(to_string(s))] = count(run.rows, s);
-  j["untrusted"] = untrusted(run.quality);
+  j["low_quality"] = count_low_quality(run.quality);
+  const std::optional<double> reliable = reliable_distance(run.rows.distance, run.quality);
+  j["reliable_distance"] = reliable ? nlohmann::ordered_json(*reliable) : nlohmann::ordered_json(nullptr);
   if (!run.rows.bounded.empty()) j["bounded"] = std::ranges::count(run.rows.bounded, 1);
   if (!run.rows.error_estimate.empty()) j["median_error_estimate"] = median(run.rows.error_estimate);
   j["source"] = source_as_json(run);
@@ -151,7 +153,7 @@ std::string as_text(const LogmapRun& run) {
   text += fmt::format("\nsource {} at {:.6g} {:.6g} {:.6g}, largest distance {:.6g}, mean edge length {:.4g}\n",
                       run.source.row ? fmt::format("{}", run.source.row->index) : to_string(run.spec), p[0], p[1], p[2],
                       largest_distance(run.rows), run.input.mean_edge_length());
-  text += quality_as_text(run.quality);
+  text += quality_as_text(run.rows.distance, run.quality);
   if (!run.rows.error_estimate.empty())
     text += fmt::format(", median error of (u, v) about {:.2g}", median(run.rows.error_estimate));
   if (const auto bounded = std::ranges::count(run.rows.bounded, 1); bounded > 0)

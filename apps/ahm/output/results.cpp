@@ -56,23 +56,31 @@ void comment_on_statuses(const std::vector<Status>& status, const std::string& i
         unreached));
 }
 
-std::ptrdiff_t untrusted(const std::vector<double>& quality) {
-  return std::count_if(quality.begin(), quality.end(), [](double q) { return q < trusted_quality; });
+std::ptrdiff_t count_low_quality(const std::vector<double>& quality) {
+  return std::count_if(quality.begin(), quality.end(), [](double q) { return q < reliable_quality; });
 }
 
-std::string quality_as_text(const std::vector<double>& quality) {
+std::string quality_as_text(const std::vector<double>& distances, const std::vector<double>& quality) {
   const auto mapped = static_cast<double>(count_mapped(quality));
-  return fmt::format("quality above {} at {:.2f} % of the mapped vertices", trusted_quality,
-                     mapped > 0 ? 100 - 100 * static_cast<double>(untrusted(quality)) / mapped : 0.0);
+  const std::string share =
+      fmt::format("quality above {} at {:.2f} % of the mapped vertices", reliable_quality,
+                  mapped > 0 ? 100 - 100 * static_cast<double>(count_low_quality(quality)) / mapped : 0.0);
+  double farthest = 0;
+  for (std::size_t i = 0; i < quality.size(); ++i)
+    if (!std::isnan(quality[i])) farthest = std::max(farthest, distances[i]);
+  const std::optional<double> reliable = reliable_distance(distances, quality);
+  if (!reliable) return fmt::format("not reliable ({})", share);
+  if (*reliable == farthest) return fmt::format("reliable everywhere ({})", share);
+  return fmt::format("reliable up to distance {:.4g} of {:.4g} ({})", *reliable, farthest, share);
 }
 
 void comment_on_quality(const std::vector<double>& quality, std::string_view advice, Journal& journal) {
-  const std::ptrdiff_t mapped = count_mapped(quality), poor = untrusted(quality);
+  const std::ptrdiff_t mapped = count_mapped(quality), poor = count_low_quality(quality);
   if (5 * poor <= mapped) return;
   journal.add_warning(fmt::format(
       "the map is not reliable at {:.0f} % of the mapped vertices (quality below {}): they lie beyond a cut locus, in "
       "folds, or where the mesh is too coarse; {}",
-      100.0 * static_cast<double>(poor) / static_cast<double>(mapped), trusted_quality, advice));
+      100.0 * static_cast<double>(poor) / static_cast<double>(mapped), reliable_quality, advice));
 }
 
 namespace {

@@ -18,8 +18,8 @@ vec3 map_color(const Material& material, const Fragment& f) {
   if (!f.known) return material.pattern == Pattern::none ? glsl::plain_color() : glsl::unknown_color();
   const vec3 color =
       glsl::map_color(static_cast<int>(material.pattern), uv, f.dx, f.dy, material.sectors, material.rings);
-  if (material.pattern == Pattern::none || !(f.value.z < static_cast<float>(trusted_quality))) return color;
-  return glsl::untrusted_color(color, f.pixel * material.pixel_size, material.pixel_size);
+  if (material.pattern == Pattern::none || !(f.value.z < static_cast<float>(reliable_quality))) return color;
+  return glsl::low_quality_color(color, f.pixel * material.pixel_size, material.pixel_size);
 }
 
 }  // namespace

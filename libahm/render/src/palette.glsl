@@ -88,7 +88,7 @@ vec3 map_color(int pattern, vec2 uv, vec2 dx, vec2 dy, float sectors, float ring
 vec3 unknown_color() { return vec3(0.42); }
 
 // The color where the quality is low: pale, with dark diagonal stripes. `pixel` in 1200ths of the picture's smaller side.
-vec3 untrusted_color(vec3 color, vec2 pixel, float pixel_size) {
+vec3 low_quality_color(vec3 color, vec2 pixel, float pixel_size) {
   float gray = 0.45 + 0.35 * dot(color, vec3(0.3, 0.5, 0.2));
   float width = 0.1414 * pixel_size;
   float stripe = 0.5 + 0.5 * square_wave(0.1414 * (pixel.x + pixel.y), 2.0 * width);

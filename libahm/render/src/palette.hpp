@@ -11,7 +11,7 @@ vec3 map_color(int pattern, vec2 uv, vec2 dx, vec2 dy, float sectors, float ring
 vec3 distance_color(float t);
 vec3 plain_color();
 vec3 unknown_color();
-vec3 untrusted_color(vec3 color, vec2 pixel, float pixel_size);
+vec3 low_quality_color(vec3 color, vec2 pixel, float pixel_size);
 vec3 matte(vec3 color, vec3 normal);
 vec3 lit(vec3 color, vec3 normal, vec3 to_eye);
 

@@ -112,6 +112,25 @@ std::vector<double> quality_beside(const TangentGraph& graph, const LogMap& map,
 
 }  // namespace
 
+std::optional<double> reliable_distance(std::span<const double> distances, std::span<const double> quality) {
+  constexpr std::size_t least_entries = 20, share = 20;  // one of 20 may have a lower quality
+  if (distances.size() != quality.size())
+    throw InvalidArgument("reliable_distance: there are " + detail::counted(distances.size(), "distance") + ", but " +
+                          std::to_string(quality.size()) + " qualities");
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < distances.size(); ++i)
+    if (!std::isnan(distances[i]) && !std::isnan(quality[i])) order.push_back(i);
+  std::ranges::sort(order, {}, [&](std::size_t i) { return distances[i]; });
+  std::optional<double> reliable;
+  for (std::size_t k = 0, low = 0; k < order.size(); ++k) {
+    low += quality[order[k]] < reliable_quality ? 1 : 0;
+    const bool is_last_at_distance = k + 1 == order.size() || distances[order[k]] < distances[order[k + 1]];
+    if (is_last_at_distance && share * low <= k + 1 && (k + 1 >= least_entries || k + 1 == order.size()))
+      reliable = distances[order[k]];
+  }
+  return reliable;
+}
+
 ReferenceFront::ReferenceFront(const TangentGraph& graph, const Source& source, double radius,
                                const std::stop_token& stop) {
   if (graph.is_delaunay()) return;

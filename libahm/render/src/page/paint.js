@@ -48,7 +48,7 @@ Ahm.make_uniforms = function (surface) {
         color = map_color(pattern, uvw.xy * scale, dx.xy * scale, dy.xy * scale, sectors, 1.0);
       }
       if (trust < 0.5 && hatch > 0.5 && !by_value)
-        return untrusted_color(color, gl_FragCoord.xy * vec2(1.0, -1.0) * pixel_size, pixel_size);
+        return low_quality_color(color, gl_FragCoord.xy * vec2(1.0, -1.0) * pixel_size, pixel_size);
       return with_decal(color, uvw.xy);
     }
     vec4 finish(vec3 color, vec3 n, vec3 p) {

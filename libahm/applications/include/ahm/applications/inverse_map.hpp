@@ -53,7 +53,7 @@ struct InverseMapOptions {
   double max_stretch = 4;
   /// `inverse_map` leaves out vertices of a lower `map_quality`; 0: none. The quality has no meaning for maps from a curve
   /// with user-defined coordinates.
-  double min_quality = trusted_quality;
+  double min_quality = reliable_quality;
   /// Quality of each vertex of the map (`map_quality`), if it is known already; empty: it is computed.
   std::span<const double> quality = {};
   unsigned threads = 0;  ///< number of threads that compute the quality; 0: one per core

@@ -4,12 +4,13 @@
 /// \code
 /// ahm::LogMap map = solver.solve(source);
 /// std::vector<double> q = ahm::map_quality(graph, map);
-/// if (q[i] < ahm::trusted_quality) ...                          // near a cut locus, behind a hole, or too coarse
+/// if (q[i] < ahm::reliable_quality) ...                          // near a cut locus, behind a hole, or too coarse
 /// \endcode
 #pragma once
 
 #include <limits>
 #include <optional>
+#include <span>
 #include <stop_token>
 #include <vector>
 
@@ -20,7 +21,7 @@
 namespace ahm {
 
 /// The vectors of vertices with a lower quality are usually wrong by more than a tenth of their length.
-inline constexpr double trusted_quality = 0.5;
+inline constexpr double reliable_quality = 0.5;
 
 /// The quality of each vertex, computed from the expected relative error e of its vector:
 ///
@@ -39,6 +40,11 @@ inline constexpr double trusted_quality = 0.5;
 /// @return n numbers in (0, 1]; NaN where the map is not ok
 /// @throws InvalidArgument when the map belongs to another graph, was made without its spread, or is from a curve and d is not 2
 std::vector<double> map_quality(const TangentGraph& graph, const LogMap& map, unsigned threads = 0);
+
+/// The distance up to which a map is reliable: the largest R such that at least 95 % of the mapped entries with distance <= R have a
+/// quality of at least `reliable_quality`. nullopt if there is no such R with at least 20 entries (or all, if there are fewer).
+/// @param distances, quality  one number per vertex or row; NaN: not mapped
+std::optional<double> reliable_distance(std::span<const double> distances, std::span<const double> quality);
 
 /// The front with which `map_quality` compares a map by heat. It is most of the work of `map_quality` and does not need the map, so it can
 /// run at the same time as the solve.

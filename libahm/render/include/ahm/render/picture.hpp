@@ -48,7 +48,7 @@ struct Scene {
   std::span<const Index> labels;
   /// Distance of each point, world units. For cells: from the source of the cell. For `Pattern::distance`: empty means |(u, v)|.
   std::span<const double> distance;
-  /// Quality of the map, one number per point (`map_quality`). Points below `trusted_quality` are hatched in gray. Empty or not finite:
+  /// Quality of the map, one number per point (`map_quality`). Points below `reliable_quality` are hatched in gray. Empty or not finite:
   /// not hatched.
   std::span<const double> quality;
   /// Position of the source, drawn as a red dot; need not be one of the points. All marks are drawn only where they are visible.

@@ -129,7 +129,7 @@ class SurfaceSolver {
   /// @throws as `log_map`
   std::vector<SurfaceLogMap> log_maps(const std::vector<Location>& sources,
                                       const SurfaceMapOptions& options = {}) const;
-  /// Quality of each row in (0, 1]; NaN where the map is not ok (`map_quality`). Do not use vectors below `trusted_quality`.
+  /// Quality of each row in (0, 1]; NaN where the map is not ok (`map_quality`). Do not use vectors below `reliable_quality`.
   /// @param map  made by this solver
   std::vector<double> quality(const SurfaceLogMap& map) const;
   /// (u, v) at a place. @throws InvalidArgument (as `Surface::at`)
