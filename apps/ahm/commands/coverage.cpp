@@ -114,16 +114,16 @@ bool has_area(const TangentGraph& graph, const LogMap& map, Index vertex) {
 }
 
 /// Share of the area within the radius whose vertices have at least the smallest allowed quality.
-double trusted_share(const TangentGraph& graph, const LogMap& map, const std::vector<double>& quality,
+double reliable_share(const TangentGraph& graph, const LogMap& map, const std::vector<double>& quality,
                      const CoverageCommandOptions& options) {
-  double all = 0, trusted = 0;
+  double all = 0, reliable = 0;
   for (Index i = 0; i < graph.size(); ++i) {
     if (!(map.distance(Vertex(i)) <= options.path.radius)) continue;
     all += graph.mass(i);
     if (quality[i] >= options.min_quality && (map.method() == Method::heat || has_area(graph, map, i)))
-      trusted += graph.mass(i);
+      reliable += graph.mass(i);
   }
-  return trusted / all;
+  return reliable / all;
 }
 
 /// Figures of the report.
@@ -149,7 +149,7 @@ struct Summary {
 };
 
 void report(const CoverageCommandOptions& options, const Input& input, const SurfaceSource& source,
-            const CoveragePath& path, double trusted, const Summary& amount, Journal& journal) {
+            const CoveragePath& path, double reliable, const Summary& amount, Journal& journal) {
   const std::string pattern = options.path.pattern == CoveragePattern::raster ? "raster" : "spiral";
   nlohmann::ordered_json j = summary("ahm coverage", options.input.path, options.output, input);
   j["source"] = {{"spec", to_string(options.source.spec)}, {"position", source.position}};
@@ -160,13 +160,13 @@ void report(const CoverageCommandOptions& options, const Input& input, const Sur
   j["pieces"] = path.pieces;
   j["length"] = amount.length;
   j["covered"] = amount.covered;
-  j["trusted_area"] = trusted;
+  j["reliable_area"] = reliable;
   j["spacing_in_space"] = {{"percentile_5", amount.spacing_low}, {"percentile_95", amount.spacing_high}};
   deliver(j,
           fmt::format("{}: {} in {}, {:.4g} long, lines {:.4g} to {:.4g} apart in space\n"
                       "on the surface: {:.1f} % of the pattern; reliable: {:.1f} % of the area within the radius\n",
                       pattern, counted(path.points.size(), "point"), counted(path.pieces, "piece"), amount.length,
-                      amount.spacing_low, amount.spacing_high, 100 * amount.covered, 100 * trusted),
+                      amount.spacing_low, amount.spacing_high, 100 * amount.covered, 100 * reliable),
           options.output, journal);
 }
 
@@ -213,7 +213,7 @@ void run(const CoverageCommandOptions& options) {
   write_view(results.scene(rows, row_quality, source), path, results, journal);
   journal.start("write");
   write_coverage(options.output.output, options.output.format, path);
-  report(options, input, source, path, trusted_share(input.graph(), map, quality, options), amount, journal);
+  report(options, input, source, path, reliable_share(input.graph(), map, quality, options), amount, journal);
 }
 
 void offer(CLI::App& app, CoverageCommandOptions& o) {
