@@ -1,108 +1,75 @@
-// Cells and spread points, through the program.
-#include <gtest/gtest.h>
-
+// Cells, spread sources and centers.
+#include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <set>
 
 #include "program.hpp"
+#include "shapes.hpp"
 
 namespace ahm::test {
 namespace {
 
-using Words = std::vector<std::string>;
+using Cells = InFolder;
 
-double distance(const Vec3& a, const Vec3& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
-
-TEST(CellsCommand, TwoPointsOfAPlaneShareItAtTheirBisector) {
-  const Folder folder;
+TEST_F(Cells, OfTwoPointsMeetAtTheBisector) {
   const auto points = plane(30);
-  const std::string out = folder / "cells.csv";
-  const Outcome outcome = run({"cells", folder.write("plane.xyz", xyz(points)), "--sources", "0.2,0.3,0 0.8,0.6,0",
-                               "-o", out, "--json", folder / "cells.json"});
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_TRUE(read_text(out).starts_with("index,x,y,z,distance,status,label\n"));
-  const auto json = read_json(folder / "cells.json");
-  const Vec3 a = json.at("sources")[0].at("position"), b = json.at("sources")[1].at("position");
-  EXPECT_EQ(points.at(json.at("sources")[0].at("row")), a);
+  write("plane.xyz", xyz(points));
+  const auto sources = summary("cells plane.xyz --sources '0.2,0.3,0 0.8,0.6,0' -o cells.csv").at("sources");
+  EXPECT_TRUE(read_text("cells.csv").starts_with("index,x,y,z,distance,status,label\n"));
+  const Vec3 a = sources[0].at("position"), b = sources[1].at("position");
+  EXPECT_EQ(points.at(sources[0].at("row")), a);
   const double h = 1.0 / 30;
   EXPECT_LT(distance(a, {0.2, 0.3, 0}), h);
-  for (NumberRow p : read_numbers(out)) {
-    const Vec3 x{p["x"], p["y"], p["z"]};
-    const double to_a = distance(a, x), to_b = distance(b, x);
+  for (const Row& p : read_csv("cells.csv")) {
+    const double to_a = distance(a, p.position()), to_b = distance(b, p.position());
     if (std::abs(to_a - to_b) > 2 * h) {
       EXPECT_EQ(p["label"], to_a < to_b ? 0 : 1);
     }
-    // Along the rim the stars of a cloud are not those of one triangulation, and the way bends a little.
+    // At the rim the stars of a cloud are not those of one triangulation, and paths bend a little.
     EXPECT_NEAR(p["distance"], p["label"] == 0 ? to_a : to_b, 0.02 * h);
   }
 }
 
-TEST(CellsCommand, TakesEveryVertexAsASource) {
-  const Folder folder;
+TEST_F(Cells, MayHaveEveryVertexAsASource) {
   const int n = 3000;
   std::string all;
   for (int i = n; i-- > 0;) all += std::to_string(i) + "\n";
-  const auto input = folder.write("sphere.xyz", xyz(sphere(n)));
-  const std::string out = folder / "cells.csv";
-  const Outcome outcome = run({"cells", input, "--sources", folder.write("all.txt", all), "-o", out});
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
-  for (NumberRow p : read_numbers(out)) {
+  write("all.txt", all);
+  write("twice.txt", all + "17\n");
+  write("sphere.xyz", xyz(sphere(n)));
+  for (const Row& p : table("cells sphere.xyz --sources all.txt")) {
     EXPECT_EQ(p["label"], n - 1 - p["index"]);
     EXPECT_EQ(p["distance"], 0);
   }
-  const Outcome twice = run({"cells", input, "--sources", folder.write("twice.txt", all + "17\n"), "-o", out});
-  EXPECT_EQ(twice.status, 1);
-  EXPECT_NE(twice.err.find("--sources 17"), std::string::npos) << twice.err;
+  expect_refused("cells sphere.xyz -o new.csv", {{"--sources twice.txt", 1, {"--sources 17"}}});
 }
 
-TEST(CellsCommand, SpreadSourcesLieFartherApartThanAnyPointFromItsSource) {
-  const Folder folder;
+TEST_F(Cells, OfSpreadSourcesAreSmallerThanTheirDistances) {
   const int n = 3000;
-  const std::string out = folder / "cells.csv";
-  const Outcome outcome = run({"cells", folder.write("sphere.xyz", xyz(sphere(n))), "--count", "12", "--start", "7",
-                               "-o", out, "--json", folder / "cells.json"});
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
-  const auto json = read_json(folder / "cells.json");
+  write("sphere.xyz", xyz(sphere(n)));
+  const auto json = summary("cells sphere.xyz --count 12 --start 7 -o cells.csv");
+  const auto rows = read_csv("cells.csv");
   const auto& sources = json.at("sources");
   ASSERT_EQ(sources.size(), 12U);
   EXPECT_EQ(sources[0].at("row"), 7);
   double area = 0, vertices = 0, nearest = 10;
   for (std::size_t k = 0; k < 12; ++k) {
-    area += sources[k].at("area").get<double>();
-    vertices += sources[k].at("vertices").get<double>();
+    area += number(sources[k], "/area");
+    vertices += number(sources[k], "/vertices");
     for (std::size_t l = 0; l < k; ++l)
       nearest = std::min(nearest, 2 * std::asin(distance(sources[k].at("position"), sources[l].at("position")) / 2));
+    EXPECT_EQ(rows.at(sources[k].at("row"))["label"], static_cast<double>(k));
   }
-  const double h = std::sqrt(4 * std::numbers::pi / n);
+  const double h = std::sqrt(4 * pi / n);
   EXPECT_EQ(vertices, n);
-  EXPECT_NEAR(area, 4 * std::numbers::pi, 4 * std::numbers::pi * h);
-  EXPECT_LT(json.at("largest_distance").get<double>(), nearest + 2 * h);
-  std::vector<NumberRow> rows = read_numbers(out);
-  std::vector<bool> seen(12, false);
-  for (NumberRow& p : rows) seen.at(static_cast<std::size_t>(p["label"])) = true;
-  for (std::size_t k = 0; k < 12; ++k) {
-    EXPECT_TRUE(seen[k]);
-    EXPECT_EQ(rows.at(sources[k].at("row"))["label"], static_cast<double>(k));  // cells contain their source
-  }
+  EXPECT_NEAR(area, 4 * pi, 4 * pi * h);
+  EXPECT_LT(number(json, "/largest_distance"), nearest + 2 * h);
 }
 
-TEST(CellsCommand, SpreadSourcesOfPolygonsAreTheirCorners) {
-  const Folder folder;
-  std::string off = "OFF\n121 100 0\n";
-  for (int j = 0; j <= 10; ++j)
-    for (int i = 0; i <= 10; ++i) off += std::to_string(i) + " " + std::to_string(j) + " 0\n";
-  for (int j = 0; j < 10; ++j)
-    for (int i = 0; i < 10; ++i) {
-      const int a = 11 * j + i;
-      for (int corner : {4, a, a + 1, a + 12, a + 11}) off += std::to_string(corner) + " ";
-      off += "\n";
-    }
-  const Outcome outcome = run({"cells", folder.write("sheet.off", off), "--count", "20", "-o", folder / "cells.csv",
-                               "--json", folder / "cells.json"});
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
+TEST_F(Cells, OfPolygonsHaveCornersAsSources) {
+  write("sheet.obj", obj(lattice(11), cells(11)));
   std::set<int> rows;
-  const auto json = read_json(folder / "cells.json");
+  const auto json = summary("cells sheet.obj --count 20 -o cells.csv");
   for (const auto& source : json.at("sources")) {
     const int row = source.at("row");
     EXPECT_EQ(Vec3(source.at("position")), (Vec3{row % 11 * 1.0, row / 11 * 1.0, 0}));
@@ -111,47 +78,70 @@ TEST(CellsCommand, SpreadSourcesOfPolygonsAreTheirCorners) {
   EXPECT_EQ(rows.size(), 20U);
 }
 
-TEST(CellsCommand, PartsWithoutASourceHaveNoCell) {
-  const Folder folder;
-  auto points = plane(15);
-  const std::size_t half = points.size();
-  for (std::size_t i = 0; i < half; ++i) points.push_back({points[i][0] + 9, points[i][1], 0});
-  const std::string out = folder / "cells.csv";
-  const Outcome outcome =
-      run({"cells", folder.write("planes.xyz", xyz(points)), "--sources", "0 5", "-o", out, "--json", "-"});
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
-  for (NumberRow p : read_numbers(out)) EXPECT_EQ(std::isnan(p["label"]), p["x"] > 5);
-  EXPECT_NE(read_text(out).find(",disconnected,nan"), std::string::npos);
-  EXPECT_NE(outcome.err.find("50 % of the vertices are not connected"), std::string::npos) << outcome.err;
+TEST_F(Cells, AreMissingOnComponentsWithoutASource) {
+  write("planes.xyz", xyz(joined(plane(15), moved(plane(15), {9, 0, 0}))));
+  const Outcome outcome = run_ok("cells planes.xyz --sources '0 5' -o cells.csv --json -");
+  for (const Row& p : read_csv("cells.csv")) {
+    EXPECT_EQ(std::isnan(p["label"]), p["x"] > 5);
+    EXPECT_EQ(p.status, p["x"] > 5 ? "disconnected" : "ok");
+  }
+  EXPECT_TRUE(has(outcome.err, "50 % of the vertices are not connected"));
 }
 
-TEST(CellsCommand, ExplainsItself) {
-  const Outcome outcome = run({"cells", "--help"});
-  EXPECT_EQ(outcome.status, 0);
-  for (const std::string word : {"--sources", "--count", "--start", "--view", "label", "Examples"})
-    EXPECT_NE(outcome.out.find(word), std::string::npos) << word;
+class Center : public InFolder {
+ protected:
+  const Points points = plane(25);
+
+  Center() { write("plane.xyz", xyz(points)); }
+};
+
+TEST_F(Center, OfPointsOfAPlaneIsTheirWeightedMean) {
+  const auto center = summary("center plane.xyz --points '3 170 611' --weights '1 2.5 1'").at("center");
+  const Vec3 found = center.at("position");
+  double spread = 0;
+  for (int a = 0; a < 2; ++a) EXPECT_NEAR(found[a], (points[3][a] + 2.5 * points[170][a] + points[611][a]) / 4.5, 1e-9);
+  for (const auto& [row, weight] : {std::pair{3, 1.0}, {170, 2.5}, {611, 1.0}})
+    spread += weight / 4.5 * std::pow(std::hypot(points[row][0] - found[0], points[row][1] - found[1]), 2);
+  EXPECT_NEAR(number(center, "/spread"), std::sqrt(spread), 1e-9);
+  expect_values(center, {{"/kind", "mean"}, {"/converged", true}});
+  EXPECT_EQ(center.at("vertex_position"), points.at(center.at("row")));
 }
 
-TEST(CellsCommand, RefusesNonsenseAndLeavesNothing) {
-  const Folder folder;
-  const auto input = folder.write("plane.xyz", xyz(plane(10)));
-  const auto expect = [&](const Words& more, int status, const std::string& culprit) {
-    Words words{"cells", input, "-o", folder / "cells.csv"};
-    words.insert(words.end(), more.begin(), more.end());
-    const Outcome outcome = run(words);
-    EXPECT_EQ(outcome.status, status) << outcome.err;
-    EXPECT_NE(outcome.err.find(culprit), std::string::npos) << outcome.err;
-  };
-  expect({}, 2, "--sources");
-  expect({"--sources", "1", "--count", "2"}, 2, "--count");
-  expect({"--sources", "1", "--start", "2"}, 2, "--count");
-  expect({"--count", "0"}, 2, "--count");
-  expect({"--count", "101"}, 1, "--count 101");
-  expect({"--sources", "1 x"}, 2, "'x'");
-  expect({"--sources", "1 100"}, 1, "--sources 100");
-  expect({"--sources", "1 2 1"}, 1, "once");
-  expect({"--sources", "face:0:1,0,0"}, 1, "--sources face");
-  EXPECT_EQ(folder.files(), Words{"plane.xyz"});
+TEST_F(Center, IsTheMedianWhereTheDirectionsToThePointsCancel) {
+  const Points near{{0.1, 0.1, 0}, {0.9, 0.2, 0}, {0.45, 0.9, 0}, {0.6, 0.85, 0}};
+  write("list.txt", xyz(near));
+  const Vec3 m = summary("center plane.xyz --points list.txt --median").at("center").at("position");
+  double sum[] = {0, 0};
+  for (const Vec3& position : near) {
+    const Vec3 p = *std::ranges::min_element(points, {}, [&](const Vec3& x) { return distance(x, position); });
+    for (int a = 0; a < 2; ++a) sum[a] += (p[a] - m[a]) / std::hypot(p[0] - m[0], p[1] - m[1]);
+  }
+  EXPECT_NEAR(std::hypot(sum[0], sum[1]), 0, 1e-6);
+}
+
+TEST_F(Center, OfPointsAroundThePoleOfASphereIsThePole) {
+  write("sphere.xyz", xyz(sphere(3000)));
+  const auto center =
+      summary("center sphere.xyz --points '0.6,0,0.8 -0.3,0.519615,0.8 -0.3,-0.519615,0.8'").at("center");
+  const Vec3 p = center.at("position");
+  const double h = 0.065;  // spacing of the points, and how far the three points are moved to the cloud
+  EXPECT_LT(std::hypot(p[0], p[1]), h);
+  EXPECT_NEAR(number(center, "/spread"), std::acos(0.8), h);
+}
+
+TEST_F(Center, InAHoleIsReported) {
+  auto ring = points;
+  std::erase_if(ring, [](const Vec3& p) { return std::hypot(p[0] - 0.5, p[1] - 0.5) < 0.3; });
+  write("ring.xyz", xyz(ring));
+  EXPECT_TRUE(has(run_ok("center ring.xyz --points '0.1,0.1,0 0.9,0.9,0'").err, "in a hole"));
+}
+
+TEST_F(Center, IsPrintedWithoutTheCostIfQuiet) {
+  const Outcome outcome = run_ok("center plane.xyz --points '0 8' --quiet");
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_TRUE(outcome.out.starts_with("mean of 2 points"));
+  EXPECT_FALSE(has(outcome.out, "peak memory"));
+  expect_values(summary("center plane.xyz --points '0 8' --quiet"), {{"/center/kind", "mean"}});
 }
 
 }  // namespace

@@ -1,5 +1,4 @@
-// Interrupts, closed pipes, full disks: the program ends soon, with a status, and leaves nothing half done.
-#include <gtest/gtest.h>
+// Interrupts, closed pipes, full disks and scarce memory: the program ends soon with a status, and no output is incomplete.
 #include <signal.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -9,40 +8,35 @@
 #include <thread>
 
 #include "program.hpp"
+#include "shapes.hpp"
 
 namespace ahm::test {
 namespace {
 
-using Words = std::vector<std::string>;
+class Interrupt : public InFolder, public testing::WithParamInterface<int> {};
 
-class Interrupt : public testing::TestWithParam<int> {};
-
-TEST_P(Interrupt, EndsTheRunInAnyStageAndLeavesNothingHalfDone) {
-  Folder folder;
-  const auto input = folder.write("sphere.xyz", xyz(sphere(60000)));
+TEST_P(Interrupt, EndsTheRunInAnyStage) {
+  write("sphere.xyz", xyz(sphere(60000)));
   int interrupted = 0;
   for (const char* stage : {"read", "graph", "factor", "solve"}) {
-    const Running running = start({"logmap", input, "--source", "0", "--method", "heat", "-o", folder / "map.csv",
-                                   "--json", folder / "map.json", "--verbose"});
-    const std::string said = read_until(running, stage);  // it has just ended, the next one runs
-    EXPECT_NE(said.find(stage), std::string::npos) << said;
+    const Running running = start("logmap sphere.xyz --source 0 --method heat -o map.csv --json map.json --verbose");
+    EXPECT_TRUE(has(read_until(running, stage), stage));  // This stage has ended, the next one runs.
     kill(running.pid, GetParam());
     const auto outcome = finish(running);
-    if (outcome.status != 0) {  // else it was done before
+    if (outcome.status != 0) {  // not finished before the signal
       EXPECT_EQ(outcome.status, 128 + GetParam()) << outcome.err;
-      EXPECT_NE(outcome.err.find("interrupted"), std::string::npos) << outcome.err;
+      EXPECT_TRUE(has(outcome.err, "interrupted"));
       ++interrupted;
     }
-    // Whatever has its name is complete.
-    for (const std::string& file : folder.files()) {
+    for (const std::string& file : files()) {  // A file with its final name is complete.
       EXPECT_TRUE(file == "sphere.xyz" || file == "map.csv" || file == "map.json") << file;
       if (file == "map.csv") {
-        EXPECT_EQ(read_csv(folder / file).size(), 60000U);
+        EXPECT_EQ(read_csv(file).size(), 60000U);
       }
       if (file == "map.json") {
-        EXPECT_EQ(read_json(folder / file).at("n"), 60000);
+        EXPECT_EQ(read_json(file).at("n"), 60000);
       }
-      if (file != "sphere.xyz") std::filesystem::remove(folder / file);
+      if (file != "sphere.xyz") std::filesystem::remove(file);
     }
   }
   EXPECT_GT(interrupted, 0);
@@ -50,133 +44,112 @@ TEST_P(Interrupt, EndsTheRunInAnyStageAndLeavesNothingHalfDone) {
 
 INSTANTIATE_TEST_SUITE_P(BySignal, Interrupt, testing::Values(SIGINT, SIGTERM, SIGHUP));
 
-TEST(Killed, LeavesWhatTheNextRunRemoves) {
-  Folder folder;
-  const auto input = folder.write("sphere.xyz", xyz(sphere(2000)));
-  const Running running = start({"logmap", input, "--source", "0", "-o", folder / "map.csv", "--verbose"});
+using Killed = InFolder;
+
+TEST_F(Killed, LeavesFilesThatTheNextRunRemoves) {
+  write("sphere.xyz", xyz(sphere(2000)));
+  const Running running = start("logmap sphere.xyz --source 0 -o map.csv --verbose");
   read_until(running, "read");
   kill(running.pid, SIGKILL);
   finish(running);
-  folder.write(".ahm-" + std::to_string(running.pid) + "-0.tmp", "index,x,");
-  EXPECT_EQ(run({"logmap", input, "--source", "0", "-o", folder / "map.csv"}).status, 0);
-  EXPECT_EQ(folder.files(), (Words{"map.csv", "sphere.xyz"}));
+  write(".ahm-" + std::to_string(running.pid) + "-0.tmp", "index,x,");
+  run_ok("logmap sphere.xyz --source 0 -o map.csv");
+  EXPECT_EQ(files(), (Words{"map.csv", "sphere.xyz"}));
 }
 
-/// The moments are seeded, where they fall is not: the same holds of each.
-TEST(Killed, AtRandomMomentsLeavesTheOldFileOrTheWholeNewOne) {
-  Folder folder;
-  const auto input = folder.write("sphere.xyz", xyz(sphere(2000)));
-  const Words words{"logmap", input, "--source", "0", "-o", folder / "map.csv"};
+/// The moments are seeded. The stage of the run at a moment is not, but the law holds in every stage.
+TEST_F(Killed, AtRandomMomentsLeavesTheOldFileOrTheCompleteNewOne) {
+  write("sphere.xyz", xyz(sphere(2000)));
+  const std::string command = "logmap sphere.xyz --source 0 -o map.csv";
   const auto start_of_run = std::chrono::steady_clock::now();
-  ASSERT_EQ(run(words).status, 0);
+  run_ok(command);
   const std::chrono::duration<double> length = std::chrono::steady_clock::now() - start_of_run;
-  const std::string whole = read_text(folder / "map.csv");
+  const std::string complete = read_text("map.csv");
   std::mt19937 random(4);
   std::uniform_real_distribution<double> moment(0, 1.2);
   for (const int signal : {SIGKILL, SIGINT, SIGTERM})
     for (int times = 0; times < 8; ++times) {
-      folder.write("map.csv", "precious\n");
-      const Running running = start(words);
+      write("map.csv", "precious\n");
+      const Running running = start(command);
       std::this_thread::sleep_for(moment(random) * length);
       kill(running.pid, signal);
       const int status = finish(running).status;
-      const std::string text = read_text(folder / "map.csv");
-      EXPECT_TRUE(text == whole || text == "precious\n") << text.substr(0, 80);
-      if (status == 0) {
-        EXPECT_EQ(text, whole);
-      }
+      const std::string text = read_text("map.csv");
+      EXPECT_TRUE(text == complete || (text == "precious\n" && status != 0)) << status << text.substr(0, 80);
     }
-  EXPECT_EQ(run(words).status, 0);
-  EXPECT_EQ(folder.files(), (Words{"map.csv", "sphere.xyz"}));
-  EXPECT_EQ(read_text(folder / "map.csv"), whole);
+  run_ok(command);
+  EXPECT_EQ(files(), (Words{"map.csv", "sphere.xyz"}));
+  EXPECT_EQ(read_text("map.csv"), complete);
 }
 
-TEST(ClosedPipe, IsNoSuccessAndNoNoise) {
-  Folder folder;
-  const auto input = folder.write("sphere.xyz", xyz(sphere(500)));
-  for (const Words& words : {Words{"logmap", input, "--source", "0", "-o", folder / "map.csv", "--json", "-"},
-                             Words{"info", input}, Words{"--help"}}) {
-    Running running = start(words);
+using Scarce = InFolder;
+
+TEST_F(Scarce, ReadersOfAPipeEndTheRunWithoutAMessage) {
+  write("sphere.xyz", xyz(sphere(500)));
+  for (const char* command : {"logmap sphere.xyz --source 0 -o map.csv --json -", "info sphere.xyz", "--help"}) {
+    Running running = start(command);
     close(running.out);
     running.out = -1;
     const auto outcome = finish(running);
-    EXPECT_NE(outcome.status, 0);
-    EXPECT_LT(outcome.status, 128);
-    EXPECT_EQ(outcome.err.find("error"), std::string::npos) << outcome.err;
+    EXPECT_TRUE(outcome.status > 0 && outcome.status < 128) << outcome.status;
+    EXPECT_FALSE(has(outcome.err, "error"));
   }
 }
 
-TEST(FullDisk, LeavesNothing) {
-  Folder folder;
-  const auto input = folder.write("sphere.xyz", xyz(sphere(2000)));
+/// Starts a command with a limit on a resource, which this process has only until the program runs.
+Outcome run_within(decltype(RLIMIT_AS) resource, rlim_t most, const std::string& command) {
   rlimit before{};
-  getrlimit(RLIMIT_FSIZE, &before);
-  const rlimit small{20000, before.rlim_max};
-  setrlimit(RLIMIT_FSIZE, &small);
-  const Running running = start({"logmap", input, "--source", "0", "-o", folder / "map.csv"});
-  setrlimit(RLIMIT_FSIZE, &before);
-  const auto outcome = finish(running);
-  EXPECT_EQ(outcome.status, 1) << outcome.err;
-  EXPECT_NE(outcome.err.find("map.csv"), std::string::npos) << outcome.err;
-  EXPECT_EQ(folder.files(), Words{"sphere.xyz"});
-}
-
-/// A run with so little address space. The libraries alone take 110 MB, the BLAS buffers 128 MB each.
-Outcome run_within(rlim_t megabytes, const Words& words) {
-  rlimit before{};
-  getrlimit(RLIMIT_AS, &before);
-  const rlimit small{megabytes << 20, before.rlim_max};
-  // The limit is for the child alone: this process is above it, and only keeps what it has until the child is there.
-  setrlimit(RLIMIT_AS, &small);
+  getrlimit(resource, &before);
+  const rlimit small{most, before.rlim_max};
+  setrlimit(resource, &small);
   Running running;
   try {
-    running = start(words);
+    running = start(command);
   } catch (...) {
-    setrlimit(RLIMIT_AS, &before);
+    setrlimit(resource, &before);
     throw;
   }
-  setrlimit(RLIMIT_AS, &before);
+  setrlimit(resource, &before);
   return finish(running);
 }
 
-TEST(ScarceMemory, IsNamedAndEndsTheRun) {
-  Folder folder;
-  const auto input = folder.write("sphere.xyz", xyz(sphere(4000)));
+TEST_F(Scarce, DiskIsReported) {
+  write("sphere.xyz", xyz(sphere(2000)));
+  const auto outcome = run_within(RLIMIT_FSIZE, 20000, "logmap sphere.xyz --source 0 -o map.csv");
+  EXPECT_EQ(outcome.status, 1) << outcome.err;
+  EXPECT_TRUE(has(outcome.err, "map.csv"));
+  EXPECT_EQ(files(), Words{"sphere.xyz"});
+}
+
+// The libraries use 110 MB of address space, each of the buffers of BLAS 128 MB.
+TEST_F(Scarce, MemoryIsReported) {
+  write("sphere.xyz", xyz(sphere(4000)));
   int refused = 0, done = 0;
-  for (const rlim_t megabytes : {250, 350, 500, 700, 1600}) {
-    for (const Words& words : {Words{"logmap", input, "--source", "0", "-o", folder / "map.csv"},
-                               Words{"local-maps", input, "--radius", "100", "-o", folder / "maps.npz"}}) {
-      const auto outcome = run_within(megabytes, words);
+  for (const rlim_t megabytes : {250, 350, 500, 700, 1600})
+    for (const char* command :
+         {"logmap sphere.xyz --source 0 -o map.csv", "local-maps sphere.xyz --radius 100 -o maps.npz"}) {
+      const auto outcome = run_within(RLIMIT_AS, megabytes << 20, command);
       ASSERT_TRUE(outcome.status == 0 || outcome.status == 1) << megabytes << " MB: " << outcome.status << outcome.err;
-      if (outcome.status == 1) {
-        EXPECT_NE(outcome.err.find("memory"), std::string::npos) << megabytes << " MB: " << outcome.err;
-      }
+      EXPECT_TRUE(outcome.status == 0 || has(outcome.err, "memory")) << megabytes << " MB: " << outcome.err;
       ++(outcome.status == 0 ? done : refused);
-      for (const std::string& file : folder.files()) EXPECT_FALSE(file.ends_with(".tmp")) << file;
+      for (const std::string& file : files()) EXPECT_FALSE(file.ends_with(".tmp")) << file;
     }
-  }
   EXPECT_GT(refused, 0);
   EXPECT_GT(done, 0);
 }
 
-TEST(ScarceMemory, IsNotFilledByAStreamWithoutEnd) {
-  Folder folder;
-  const std::string command = "yes 1 2 3 | (ulimit -v 1500000; '" AHM_PROGRAM "' info - 2> '" + (folder / "words") +
-                              "'; echo $? > '" + (folder / "status") + "')";
-  std::system(command.c_str());
-  EXPECT_EQ(read_text(folder / "status"), "1\n");
-  EXPECT_NE(read_text(folder / "words").find("a third of the free memory"), std::string::npos)
-      << read_text(folder / "words");
+TEST_F(Scarce, MemoryIsNotFilledByAnEndlessStream) {
+  std::system("yes 1 2 3 | (ulimit -v 1500000; '" AHM_PROGRAM "' info - 2> errors; echo $? > status)");
+  EXPECT_EQ(read_text("status"), "1\n");
+  EXPECT_TRUE(has(read_text("errors"), "a third of the free memory"));
 }
 
-// Threads take address space of their own: where one thread can march, two do not fail.
-TEST(ScarceMemory, SufficesForTwoThreadsWhereItDoesForOne) {
-  Folder folder;
-  const auto input = folder.write("sphere.xyz", xyz(sphere(20000)));
-  const auto status = [&](rlim_t megabytes, const char* threads) {
-    return run_within(megabytes, {"logmap", input, "--source", "0", "--strategy", "march", "--threads", threads, "-o",
-                                  folder / "map.csv"})
-        .status;
+// Threads need address space. Where it is sufficient for one thread, two threads do not fail.
+TEST_F(Scarce, MemoryForOneThreadIsSufficientForTwo) {
+  write("sphere.xyz", xyz(sphere(20000)));
+  const auto status = [](rlim_t megabytes, const std::string& threads) {
+    const std::string command = "logmap sphere.xyz --source 0 --strategy march -o map.csv --threads ";
+    return run_within(RLIMIT_AS, megabytes << 20, command + threads).status;
   };
   rlim_t enough = 250;
   while (enough < 3000 && status(enough, "1") != 0) enough += 25;

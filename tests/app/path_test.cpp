@@ -1,278 +1,145 @@
-// Paths and lines over meshes, through the program.
-#include <gtest/gtest.h>
-
+// Shortest paths and straight lines.
 #include <cmath>
 
 #include "ahm/io/read.hpp"
 #include "program.hpp"
+#include "shapes.hpp"
 
 namespace ahm::test {
 namespace {
 
-/// A unit cube of quads, corner k at the bits of k, and beside it a square.
-const char* const cube_and_square =
-    "OFF\n12 7 0\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 0 1\n1 0 1\n0 1 1\n1 1 1\n3 0 0\n4 0 0\n4 1 0\n3 1 0\n"
-    "4 0 2 3 1\n4 4 5 7 6\n4 0 1 5 4\n4 2 6 7 3\n4 0 4 6 2\n4 1 3 7 5\n4 8 9 10 11\n";
-
-double sum_of_steps(const std::vector<NumberRow>& rows) {
+double sum_of_steps(const std::vector<Row>& rows) {
   double sum = 0;
-  for (std::size_t k = 1; k < rows.size(); ++k)
-    sum += std::hypot(rows[k].at("x") - rows[k - 1].at("x"), rows[k].at("y") - rows[k - 1].at("y"),
-                      rows[k].at("z") - rows[k - 1].at("z"));
+  for (std::size_t k = 1; k < rows.size(); ++k) sum += distance(rows[k].position(), rows[k - 1].position());
   return sum;
 }
 
-TEST(PathCommand, UnfoldsACube) {
-  Folder folder;
-  const std::string input = folder.write("cube.off", cube_and_square);
-  const Outcome outcome =
-      run({"path", input, "--from", "0", "--to", "7", "-o", folder / "path.csv", "--json", folder / "path.json"});
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
-  const auto rows = read_numbers(folder / "path.csv");
-  EXPECT_NEAR(sum_of_steps(rows), std::sqrt(5.0), 1e-12);
-  EXPECT_NEAR(rows.back().at("arclength"), std::sqrt(5.0), 1e-12);
-  EXPECT_EQ(rows.front().at("x"), 0);
-  for (const char* axis : {"x", "y", "z"}) EXPECT_NEAR(rows.back().at(axis), 1, 1e-15);
-  EXPECT_NEAR(read_json(folder / "path.json").at("length").get<double>(), std::sqrt(5.0), 1e-12);
-}
-
-// In other units, or rows with commas between them: every command that takes positions says so.
-TEST(PathCommand, SaysThatPositionsLieFarOffTheSurface) {
-  Folder folder;
-  const std::string input = folder.write("cube.off", cube_and_square), output = folder / "out.csv";
-  const std::vector<std::vector<std::string>> commands{
-      {"path", input, "--from", "0,200,300", "--to", "7"},
-      {"path", input, "--from", "0", "--to", "0,200,300"},
-      {"trace", input, "--source", "0,200,300", "--direction", "1,0,0", "--length", "1"},
-      {"cells", input, "--sources", "0,200,300"},
-      {"center", input, "--points", "0,200,300", "--json", output},
-      {"inverse", input, "--source", "0,200,300", "--at", "0,0"},
-      {"logmap", input, "--source", "0,200,300"}};
-  for (std::vector<std::string> command : commands) {
-    if (command[0] != "center") command.insert(command.end(), {"-o", output});
-    const Outcome outcome = run(command);
-    EXPECT_EQ(outcome.status, 0) << outcome.err;
-    EXPECT_NE(outcome.err.find("0,200,300: 3"), std::string::npos) << command[0] << ": " << outcome.err;
-    EXPECT_NE(outcome.err.find("separate them by blanks"), std::string::npos) << command[0] << ": " << outcome.err;
+class Path : public InFolder {
+ protected:
+  Path() {
+    write("cube.off", cube_and_square);
+    write("plane.xyz", xyz(plane(20)));
   }
-  const Outcome near = run({"path", input, "--from", "0.1,0.1,-0.5", "--to", "7", "-o", output});
-  EXPECT_EQ(near.err.find("off the surface"), std::string::npos) << near.err;
+};
+
+TEST_F(Path, UnfoldsACube) {
+  const double length = number(summary("path cube.off --from 0 --to 7 -o path.csv"), "/length");
+  const auto rows = read_csv("path.csv");
+  for (const double l : {length, sum_of_steps(rows), rows.back()["arclength"]}) EXPECT_NEAR(l, std::sqrt(5.0), 1e-12);
+  EXPECT_EQ(rows.front()["x"], 0);
+  EXPECT_LT(distance(rows.back().position(), {1, 1, 1}), 1e-15);
 }
 
-TEST(PathCommand, GoesThroughPointsAndBack) {
-  Folder folder;
-  const std::string input = folder.write("cube.off", cube_and_square);
-  for (const std::string name : {"loop.csv", "loop.ply", "loop.obj"}) {
-    // From the middle of the front over those of three further sides, the second one named by a position off it.
-    const Outcome outcome = run({"path", input, "--from", "face:2:.25,.25,.25,.25", "--to",
-                                 "1.3,.5,.5 face:3:.25,.25,.25,.25 face:4:.25,.25,.25,.25", "--closed", "-o",
-                                 folder / name, "--json", folder / "loop.json", "--view", folder / "loop.png"});
-    ASSERT_EQ(outcome.status, 0) << outcome.err;
-    const auto json = read_json(folder / "loop.json");
-    EXPECT_NEAR(json.at("length").get<double>(), 4, 1e-12);
-    for (const auto& length : json.at("lengths")) EXPECT_NEAR(length.get<double>(), 1, 1e-12);
-    EXPECT_GT(std::filesystem::file_size(folder / "loop.png"), 1000U);
+// A position in other units, or rows separated by commas: every command that has positions warns.
+TEST_F(Path, AndOtherCommandsWarnOfPositionsFarOffTheSurface) {
+  for (const std::string command :
+       {"path cube.off --from 0,200,300 --to 7 -o out.csv", "path cube.off --from 0 --to 0,200,300 -o out.csv",
+        "trace cube.off --source 0,200,300 --direction 1,0,0 --length 1 -o out.csv",
+        "cells cube.off --sources 0,200,300 -o out.csv", "center cube.off --points 0,200,300",
+        "inverse cube.off --source 0,200,300 --at 0,0 -o out.csv", "logmap cube.off --source 0,200,300 -o out.csv"})
+    EXPECT_TRUE(has(run_ok(command).err, "0,200,300: 3", "separate them by blanks")) << command;
+  EXPECT_FALSE(has(run_ok("path cube.off --from 0.1,0.1,-0.5 --to 7 -o out.csv").err, "off the surface"));
+}
+
+TEST_F(Path, VisitsStopsAndReturns) {
+  // From the middle of the front over those of the other three sides. The second stop is a position off the surface.
+  for (const std::string file : {"loop.csv", "loop.ply", "loop.obj"}) {
+    const auto json = summary(
+        "path cube.off --from face:2:.25,.25,.25,.25 --to '1.3,.5,.5 face:3:.25,.25,.25,.25 face:4:.25,.25,.25,.25' "
+        "--closed --view loop.png -o " +
+        file);
+    EXPECT_NEAR(number(json, "/length"), 4, 1e-12);
+    for (const double length : json.at("lengths")) EXPECT_NEAR(length, 1, 1e-12);
+    EXPECT_GT(std::filesystem::file_size("loop.png"), 1000U);
   }
-  EXPECT_NEAR(sum_of_steps(read_numbers(folder / "loop.csv")), 4, 1e-12);
-  EXPECT_EQ(io::read(folder / "loop.obj").points.size(), read_numbers(folder / "loop.csv").size());
-  EXPECT_EQ(io::read(folder / "loop.ply").points.size(), read_numbers(folder / "loop.csv").size());
-}
-
-TEST(PathCommand, NamesWhatItLeadsThrough) {
-  Folder folder;
-  const std::string input = folder.write("cube.off", cube_and_square);
-  const auto length = [&](const std::vector<std::string>& words) {
-    std::vector<std::string> all{
-        "path", input, "--from", "face:2:.25,.25,.25,.25", "-o", folder / "path.csv", "--json", folder / "path.json"};
-    all.insert(all.end(), words.begin(), words.end());
-    const Outcome outcome = run(all);
-    EXPECT_EQ(outcome.status, 0) << outcome.err;
-    return read_json(folder / "path.json").at("length").get<double>();
+  const auto rows = read_csv("loop.csv");
+  EXPECT_NEAR(sum_of_steps(rows), 4, 1e-12);
+  for (const char* file : {"loop.obj", "loop.ply"}) EXPECT_EQ(io::read(file).points.size(), rows.size());
+  const auto length = [](const std::string& stops) {
+    return number(summary("path cube.off --from face:2:.25,.25,.25,.25 -o path.csv " + stops), "/length");
   };
-  const std::string beside = "face:5:.25,.25,.25,.25", behind = "face:3:.25,.25,.25,.25";
-  EXPECT_NEAR(length({"--through", beside, "--to", behind}), 2, 1e-12);
-  EXPECT_EQ(length({"--through", beside, "--to", behind}), length({"--to", beside + " " + behind}));
+  const std::string right = "face:5:.25,.25,.25,.25", back = "face:3:.25,.25,.25,.25";
+  EXPECT_NEAR(length("--through " + right + " --to " + back), 2, 1e-12);
+  EXPECT_EQ(length("--through " + right + " --to " + back), length("--to '" + right + " " + back + "'"));
 }
 
-TEST(PathCommand, FindsAPathForEveryPairOfAFile) {
-  Folder folder;
-  const std::string input = folder.write("cube.off", cube_and_square);
-  const std::string pairs = folder.write("pairs.txt", "# from to\n0 7\n0 3\n\n0 9\n3.5,0,0 3.5,1,0\n0 0 0  0 0 1\n");
-  for (const std::string how : {"", "--fast"}) {
-    std::vector<std::string> words{"path",    input,
-                                   "--pairs", pairs,
-                                   "-o",      folder / "paths.csv",
-                                   "--json",  folder / "paths.json",
-                                   "--view",  folder / "paths.png"};
-    if (!how.empty()) words.push_back(how);
-    const Outcome outcome = run(words);
-    ASSERT_EQ(outcome.status, 0) << outcome.err;
-    EXPECT_NE(outcome.err.find("different components of the surface: 1 of 5"), std::string::npos) << outcome.err;
-    const auto paths = read_json(folder / "paths.json").at("paths");
-    const double expected[] = {std::sqrt(5.0), std::sqrt(2.0), 0, 1, 1};
-    std::vector<double> walked(5, 0), last(5, 0);
-    for (const NumberRow& row : read_numbers(folder / "paths.csv"))
-      last[static_cast<std::size_t>(row.at("curve"))] = row.at("arclength");
+TEST_F(Path, IsFoundForEveryPairOfAFile) {
+  write("pairs.txt", "# from to\n0 7\n0 3\n\n0 9\n3.5,0,0 3.5,1,0\n0 0 0  0 0 1\n");
+  const double expected[] = {std::sqrt(5.0), std::sqrt(2.0), 0, 1, 1};
+  for (const std::string how : {"", " --fast"}) {
+    const Outcome outcome = run_ok("path cube.off --pairs pairs.txt -o paths.csv --view paths.png --json -" + how);
+    EXPECT_TRUE(has(outcome.err, "different components of the surface: 1 of 5"));
+    const auto paths = nlohmann::json::parse(outcome.out).at("paths");
+    std::vector<double> last(5, 0);
+    for (const Row& row : read_csv("paths.csv")) last[static_cast<std::size_t>(row["curve"])] = row["arclength"];
     for (std::size_t k = 0; k < 5; ++k) {
       EXPECT_EQ(paths[k].at("status"), k == 2 ? "disconnected" : "ok");
       EXPECT_NEAR(last[k], expected[k], 1e-12);
       if (k == 2)
         EXPECT_TRUE(paths[k].at("length").is_null());
       else
-        EXPECT_NEAR(paths[k].at("length").get<double>(), expected[k], 1e-12);
+        EXPECT_NEAR(number(paths[k], "/length"), expected[k], 1e-12);
     }
   }
-  for (const char* name : {"paths.obj", "paths.ply"}) {
-    EXPECT_EQ(run({"path", input, "--pairs", pairs, "-o", folder / name}).status, 0);
-    EXPECT_EQ(io::read(folder / name).points.size(), read_numbers(folder / "paths.csv").size());
+  for (const std::string file : {"paths.obj", "paths.ply"}) {
+    run_ok("path cube.off --pairs pairs.txt -o " + file);
+    EXPECT_EQ(io::read(file).points.size(), read_csv("paths.csv").size());
   }
-  const std::string curves = read_text(folder / "paths.obj");
-  std::size_t lines = 0;
-  for (std::size_t at = curves.find("\nl "); at != std::string::npos; at = curves.find("\nl ", at + 1)) ++lines;
-  EXPECT_EQ(lines, 4U) << "one for each path";
+  EXPECT_EQ(obj_lines("paths.obj", "l").size(), 4U);
 }
 
-TEST(PathCommand, NamesTheLineOfABadPair) {
-  Folder folder;
-  const std::string input = folder.write("cube.off", cube_and_square);
-  const Outcome outcome =
-      run({"path", input, "--pairs", folder.write("pairs.txt", "0 7\n0 1 2\n"), "-o", folder / "paths.csv"});
-  EXPECT_NE(outcome.status, 0);
-  EXPECT_NE(outcome.err.find("line 2"), std::string::npos) << outcome.err;
-  EXPECT_NE(run({"path", input, "-o", folder / "paths.csv"}).err.find("--pairs"), std::string::npos);
-}
-
-TEST(PathCommand, TightensALoop) {
-  Folder folder;
-  const std::string input = folder.write("cube.off", cube_and_square);
-  // Wavering about the cube: the shortest such loops are straight and as long as four sides.
-  const std::vector<std::string> words{"path",
-                                       input,
-                                       "--from",
-                                       "face:2:.3,.3,.2,.2",
-                                       "--to",
-                                       "face:5:.2,.4,.2,.2 face:3:.25,.25,.25,.25 face:4:.3,.2,.2,.3",
-                                       "--closed",
-                                       "-o",
-                                       folder / "loop.csv",
-                                       "--json",
-                                       folder / "loop.json"};
-  std::vector<std::string> tight = words;
-  tight.push_back("--tighten");
-  ASSERT_EQ(run(words).status, 0);
-  const double loose = read_json(folder / "loop.json").at("length").get<double>();
-  const Outcome outcome = run(tight);
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
-  const auto json = read_json(folder / "loop.json");
-  EXPECT_NEAR(json.at("length").get<double>(), 4, 1e-9);
-  EXPECT_NEAR(json.at("length_through_stops").get<double>(), loose, 1e-12);
+// The shortest loops around the cube are straight, and as long as four sides.
+TEST_F(Path, IsTightenedToALoop) {
+  const std::string command =
+      "path cube.off --from face:2:.3,.3,.2,.2 --to 'face:5:.2,.4,.2,.2 face:3:.25,.25,.25,.25 face:4:.3,.2,.2,.3' "
+      "--closed -o loop.csv";
+  const double loose = number(summary(command), "/length");
+  const auto json = summary(command + " --tighten");
+  EXPECT_NEAR(number(json, "/length"), 4, 1e-9);
+  EXPECT_NEAR(number(json, "/length_through_stops"), loose, 1e-12);
   EXPECT_GT(loose, 4);
-  // On a flat square a loop goes around nothing.
-  const Outcome flat =
-      run({"path", input, "--from", "8", "--to", "9 10", "--closed", "--tighten", "-o", folder / "flat.csv"});
-  EXPECT_EQ(flat.status, 1);
-  EXPECT_NE(flat.err.find("shrinks"), std::string::npos) << flat.err;
 }
 
-TEST(PathCommand, SaysWhyThereIsNone) {
-  Folder folder;
-  const std::string input = folder.write("cube.off", cube_and_square);
-  const auto refused = [&](const std::string& file, const std::string& to, const std::string& word) {
-    const Outcome outcome = run({"path", file, "--from", "0", "--to", to, "-o", folder / "path.csv"});
-    EXPECT_EQ(outcome.status, 1);
-    EXPECT_NE(outcome.err.find(word), std::string::npos) << outcome.err;
-    EXPECT_FALSE(std::filesystem::exists(folder / "path.csv"));
-  };
-  refused(input, "9", "there is no path");
-  refused(input, "12", "--to 12");
-}
-
-TEST(PathCommand, IsStraightOverAFlatCloud) {
-  Folder folder;
-  const std::string input = folder.write("plane.xyz", xyz(plane(20)));
-  const Outcome outcome = run(
-      {"path", input, "--from", "0", "--to", "0.9,0.8,0", "-o", folder / "path.csv", "--json", folder / "path.json"});
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
-  const auto rows = read_numbers(folder / "path.csv");
+TEST_F(Path, IsStraightOnAFlatCloud) {
+  const double length = number(summary("path plane.xyz --from 0 --to 0.9,0.8,0 -o path.csv"), "/length");
+  const auto rows = read_csv("path.csv");
   ASSERT_GT(rows.size(), 5U);
-  const double across = rows.back().at("x") - rows.front().at("x"), up = rows.back().at("y") - rows.front().at("y");
-  EXPECT_NEAR(rows.back().at("x"), 0.9, 1e-12);
-  for (const NumberRow& row : rows)
-    EXPECT_NEAR((row.at("x") - rows.front().at("x")) * up, (row.at("y") - rows.front().at("y")) * across, 1e-12);
-  EXPECT_NEAR(read_json(folder / "path.json").at("length").get<double>(), std::hypot(across, up), 1e-11);
-  for (const char* option : {"--fast", "--tighten"}) {
-    const Outcome refused =
-        run({"path", input, "--from", "0", "--to", "5 90", "--closed", option, "-o", folder / "no.csv"});
-    EXPECT_EQ(refused.status, 1);
-    EXPECT_NE(refused.err.find("requires faces"), std::string::npos) << refused.err;
-  }
+  const Vec3 a = rows.front().position(), b = rows.back().position();
+  EXPECT_NEAR(b[0], 0.9, 1e-12);
+  for (const Row& row : rows) EXPECT_NEAR((row["x"] - a[0]) * (b[1] - a[1]), (row["y"] - a[1]) * (b[0] - a[0]), 1e-12);
+  EXPECT_NEAR(length, distance(a, b), 1e-11);
 }
 
-TEST(TraceCommand, GoesStraightOverAFlatCloudToItsRim) {
-  Folder folder;
-  const std::string input = folder.write("plane.xyz", xyz(plane(20)));
-  const Outcome outcome = run({"trace", input, "--source", "0", "--direction", "1,0.5,3", "--length", "0.3", "-o",
-                               folder / "line.csv", "--json", folder / "line.json"});
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
-  const auto rows = read_numbers(folder / "line.csv");
-  EXPECT_NEAR(rows.back().at("x") - rows.front().at("x"), 0.3 * 2 / std::sqrt(5.0), 1e-12);
-  EXPECT_NEAR(rows.back().at("y") - rows.front().at("y"), 0.3 / std::sqrt(5.0), 1e-12);
-  ASSERT_EQ(run({"trace", input, "--source", "0", "--direction", "1,0,0", "--length", "9", "-o", folder / "line.csv",
-                 "--json", folder / "line.json"})
-                .status,
-            0);
-  const auto json = read_json(folder / "line.json");
-  EXPECT_EQ(json.at("end").at("at"), "boundary");
-  EXPECT_NEAR(json.at("length").get<double>(), 0.5, 0.1);
+using Trace = Path;
+
+TEST_F(Trace, IsStraightOnAFlatCloudAndEndsAtItsRim) {
+  const auto rows = table("trace plane.xyz --source 0 --direction 1,0.5,3 --length 0.3");
+  EXPECT_NEAR(rows.back()["x"] - rows.front()["x"], 0.3 * 2 / std::sqrt(5.0), 1e-12);
+  EXPECT_NEAR(rows.back()["y"] - rows.front()["y"], 0.3 / std::sqrt(5.0), 1e-12);
+  const auto json = summary("trace plane.xyz --source 0 --direction 1,0,0 --length 9 -o line.csv");
+  expect_values(json, {{"/end/at", "boundary"}});
+  EXPECT_NEAR(number(json, "/length"), 0.5, 0.1);
 }
 
-TEST(TraceCommand, GoesRoundACube) {
-  Folder folder;
-  const std::string input = folder.write("cube.off", cube_and_square);
-  const Outcome outcome = run({"trace", input, "--source", "face:2:.2,.3,.3,.2", "--direction", "1,0,0", "--length",
-                               "4", "-o", folder / "line.csv", "--json", folder / "line.json"});
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
-  const auto rows = read_numbers(folder / "line.csv");
-  for (const char* axis : {"x", "y", "z"}) EXPECT_NEAR(rows.back().at(axis), rows.front().at(axis), 1e-12);
+TEST_F(Trace, ClosesAroundACubeAndEndsAtABoundary) {
+  expect_values(summary("trace cube.off --source face:2:.2,.3,.3,.2 --direction 1,0,0 --length 4 -o line.csv"),
+                {{"/end/at", "length"}});
+  const auto rows = read_csv("line.csv");
+  EXPECT_LT(distance(rows.back().position(), rows.front().position()), 1e-12);
   EXPECT_NEAR(sum_of_steps(rows), 4, 1e-12);
-  EXPECT_EQ(read_json(folder / "line.json").at("end").at("at"), "length");
+  const auto json = summary("trace cube.off --source 3.25,.5,0 --direction 1,0,7 --length 4 -o line.csv");
+  expect_values(json, {{"/end/at", "boundary"}});
+  EXPECT_NEAR(number(json, "/length"), 0.75, 1e-12);
+  EXPECT_NEAR(read_csv("line.csv").back()["x"], 4, 1e-12);
 }
 
-TEST(TraceCommand, EndsAtTheBoundary) {
-  Folder folder;
-  const std::string input = folder.write("cube.off", cube_and_square);
-  const Outcome outcome = run({"trace", input, "--source", "3.25,.5,0", "--direction", "1,0,7", "--length", "4", "-o",
-                               folder / "line.csv", "--json", folder / "line.json"});
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
-  const auto json = read_json(folder / "line.json");
-  EXPECT_EQ(json.at("end").at("at"), "boundary");
-  EXPECT_NEAR(json.at("length").get<double>(), 0.75, 1e-12);
-  EXPECT_NEAR(read_numbers(folder / "line.csv").back().at("x"), 4, 1e-12);
-}
-
-TEST(TraceCommand, GoesAlongEveryLineOfAFile) {
-  Folder folder;
-  const std::string input = folder.write("cube.off", cube_and_square);
-  const std::string lines = folder.write("lines.txt", "face:2:.2,.3,.3,.2 1,0,0\n3.25,.5,0 1,0,7 9\n");
-  const Outcome outcome = run({"trace", input, "--lines", lines, "--length", "4", "-o", folder / "lines.csv", "--json",
-                               folder / "lines.json", "--view", folder / "lines.png"});
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
-  const auto json = read_json(folder / "lines.json").at("lines");
-  EXPECT_EQ(json[0].at("end"), "length");
-  EXPECT_NEAR(json[0].at("length").get<double>(), 4, 1e-12);
-  EXPECT_EQ(json[1].at("end"), "boundary");
-  EXPECT_NEAR(json[1].at("length").get<double>(), 0.75, 1e-12);
-  EXPECT_EQ(read_numbers(folder / "lines.csv").back().at("curve"), 1);
-  const Outcome endless = run({"trace", input, "--lines", lines, "-o", folder / "lines.csv"});
-  EXPECT_NE(endless.err.find("--length"), std::string::npos) << endless.err;
-}
-
-TEST(TraceCommand, RefusesADirectionAlongTheNormal) {
-  Folder folder;
-  const Outcome outcome = run({"trace", folder.write("cube.off", cube_and_square), "--source", "3.25,.5,0",
-                               "--direction", "0,0,1", "--length", "1", "-o", folder / "line.csv"});
-  EXPECT_EQ(outcome.status, 1);
-  EXPECT_NE(outcome.err.find("--direction"), std::string::npos) << outcome.err;
+TEST_F(Trace, FollowsEveryLineOfAFile) {
+  write("lines.txt", "face:2:.2,.3,.3,.2 1,0,0\n3.25,.5,0 1,0,7 9\n");
+  const auto json = summary("trace cube.off --lines lines.txt --length 4 -o lines.csv --view lines.png");
+  expect_values(json, {{"/lines/0/end", "length"}, {"/lines/1/end", "boundary"}});
+  EXPECT_NEAR(number(json, "/lines/0/length"), 4, 1e-12);
+  EXPECT_NEAR(number(json, "/lines/1/length"), 0.75, 1e-12);
+  EXPECT_EQ(read_csv("lines.csv").back()["curve"], 1);
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 #include "program.hpp"
 
 #include <fcntl.h>
-#include <gtest/gtest.h>
 #include <poll.h>
 #include <signal.h>
 #include <spawn.h>
@@ -16,12 +15,11 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
-#include <random>
 #include <sstream>
 #include <stdexcept>
 #include <thread>
 
-#include "ahm/conformance/clouds.hpp"
+#include "ahm/io/image.hpp"
 
 extern char** environ;
 
@@ -46,7 +44,36 @@ void drain(const Running& running, Outcome& outcome) {
   }
 }
 
-/// A pseudo-terminal: what is written to the second end comes out of the first.
+/// Arguments of a command line.
+Words split(const std::string& command) {
+  Words words;
+  for (bool quoted = false, inside = false; char c : command) {
+    if (c == ' ' && !quoted) {
+      inside = false;
+      continue;
+    }
+    if (!inside) words.emplace_back();
+    inside = true;
+    if (c == '\'')
+      quoted = !quoted;
+    else
+      words.back() += c;
+  }
+  return words;
+}
+
+/// Paths and bytes of all files below the working directory.
+std::map<std::string, std::string> contents() {
+  std::map<std::string, std::string> result;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(".")) {
+    std::string& bytes = result[entry.path().string()];
+    if (std::ifstream file(entry.path(), std::ios::binary); entry.is_regular_file())
+      bytes.assign(std::istreambuf_iterator<char>(file), {});
+  }
+  return result;
+}
+
+/// A pseudo-terminal: the first end reads what is written to the second end.
 std::array<int, 2> open_terminal() {
   const int ours = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
   if (ours < 0 || grantpt(ours) != 0 || unlockpt(ours) != 0) throw std::runtime_error("posix_openpt");
@@ -66,7 +93,7 @@ bool has_terminals() {
   }
 }
 
-Running start(const std::vector<std::string>& arguments, bool on_terminal, const std::string& input) {
+Running start(const std::string& command, bool on_terminal, const std::string& input) {
   std::array<int, 2> out{}, err = on_terminal ? open_terminal() : std::array<int, 2>{};
   if (pipe2(out.data(), O_CLOEXEC) != 0 || (!on_terminal && pipe2(err.data(), O_CLOEXEC) != 0))
     throw std::runtime_error("pipe2");
@@ -82,7 +109,7 @@ Running start(const std::vector<std::string>& arguments, bool on_terminal, const
   sigaddset(&hangup, SIGHUP);
   posix_spawnattr_setsigdefault(&attributes, &hangup);
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
-  std::vector<std::string> words = arguments;
+  Words words = split(command);
   words.insert(words.begin(), AHM_PROGRAM);
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
@@ -97,40 +124,26 @@ Running start(const std::vector<std::string>& arguments, bool on_terminal, const
   return running;
 }
 
-namespace {
-
-/// Takes leave of a program whose outputs have ended.
-void reap(const Running& running, Outcome& outcome) {
+Outcome finish(const Running& running, bool slowly) {
+  Outcome outcome;
+  {
+    std::jthread brake;
+    if (slowly)
+      brake = std::jthread([&](const std::stop_token& ended) {
+        for (int slice = 0; slice < 50 && !ended.stop_requested(); ++slice) {
+          kill(running.pid, SIGSTOP);
+          std::this_thread::sleep_for(std::chrono::milliseconds(200));
+          kill(running.pid, SIGCONT);
+          std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        }
+      });
+    drain(running, outcome);
+  }  // The thread has ended before waitpid: afterwards another process may have this id.
   close(running.out);
   close(running.err);
   int status = 0;
   waitpid(running.pid, &status, 0);
   outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-}
-
-}  // namespace
-
-Outcome finish(Running running) {
-  Outcome outcome;
-  drain(running, outcome);
-  reap(running, outcome);
-  return outcome;
-}
-
-Outcome finish_slowly(Running running) {
-  Outcome outcome;
-  {
-    const std::jthread brake([&](const std::stop_token& ended) {
-      for (int slice = 0; slice < 50 && !ended.stop_requested(); ++slice) {
-        kill(running.pid, SIGSTOP);
-        std::this_thread::sleep_for(std::chrono::milliseconds(200));
-        kill(running.pid, SIGCONT);
-        std::this_thread::sleep_for(std::chrono::milliseconds(20));
-      }
-    });
-    drain(running, outcome);
-  }  // the brake is off before the process is taken leave of
-  reap(running, outcome);
   return outcome;
 }
 
@@ -141,99 +154,124 @@ std::string read_until(const Running& running, const std::string& word) {
   return text;
 }
 
-Outcome run(const std::vector<std::string>& arguments) { return finish(start(arguments)); }
+Outcome run(const std::string& command) { return finish(start(command)); }
 
-std::string Folder::write(const std::string& name, const std::string& bytes) const {
-  std::ofstream(directory() / name, std::ios::binary) << bytes;
-  return *this / name;
+Outcome run_ok(const std::string& command) {
+  Outcome outcome = run(command);
+  EXPECT_EQ(outcome.status, 0) << command << '\n' << outcome.err;
+  return outcome;
 }
 
-std::vector<std::string> Folder::files() const {
-  std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(directory()))
-    names.push_back(entry.path().filename().string());
-  std::sort(names.begin(), names.end());
+nlohmann::json summary(const std::string& command) { return nlohmann::json::parse(run_ok(command + " --json -").out); }
+
+void InFolderWithImages::SetUp() {
+  if (!io::has_images()) GTEST_SKIP() << "this build has no stb";
+}
+
+void write(const std::string& file, const std::string& bytes) { std::ofstream(file, std::ios::binary) << bytes; }
+
+std::string read_text(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary);
+  EXPECT_TRUE(stream) << file;
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+nlohmann::json read_json(const std::string& file) { return nlohmann::json::parse(read_text(file)); }
+
+Words files() {
+  Words names;
+  for (const auto& entry : std::filesystem::directory_iterator(".")) names.push_back(entry.path().filename().string());
+  std::ranges::sort(names);
   return names;
 }
 
-std::string read_text(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  EXPECT_TRUE(file) << path;
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-nlohmann::json read_json(const std::string& path) { return nlohmann::json::parse(read_text(path)); }
-
-std::vector<Row> read_csv(const std::string& path) {
-  std::istringstream lines(read_text(path));
+std::vector<Row> read_csv(const std::string& file) {
+  std::istringstream lines(read_text(file));
   std::string line;
+  const auto fields = [&] {
+    Words result;
+    std::istringstream stream(line);
+    for (std::string field; std::getline(stream, field, ',');) result.push_back(field);
+    return result;
+  };
   std::getline(lines, line);
-  EXPECT_TRUE(line.starts_with("index,x,y,z,u,v,distance,angle,status,quality,spread")) << line;
-  const std::ptrdiff_t columns = 1 + std::ranges::count(line, ',');
+  const Words names = fields();
   std::vector<Row> rows;
   while (std::getline(lines, line)) {
-    std::vector<std::string> fields;
-    std::istringstream stream(line);
-    for (std::string field; std::getline(stream, field, ',');) fields.push_back(field);
-    if (std::ssize(fields) != columns) {
-      ADD_FAILURE() << "not " << columns << " fields: " << line;
-      break;
-    }
-    const auto number = [&](std::size_t i) { return std::strtod(fields[i].c_str(), nullptr); };
-    rows.push_back({std::stol(fields[0]),
-                    {number(1), number(2), number(3)},
-                    number(4),
-                    number(5),
-                    number(6),
-                    number(7),
-                    fields[8]});
-  }
-  return rows;
-}
-
-std::vector<NumberRow> read_numbers(const std::string& path) {
-  std::istringstream lines(read_text(path));
-  std::string line, field;
-  std::vector<std::string> names;
-  std::getline(lines, line);
-  for (std::istringstream header(line); std::getline(header, field, ',');) names.push_back(field);
-  std::vector<NumberRow> rows;
-  while (std::getline(lines, line)) {
+    const Words words = fields();
+    EXPECT_EQ(words.size(), names.size()) << line;
     rows.emplace_back();
-    std::size_t column = 0;
-    for (std::istringstream fields(line); std::getline(fields, field, ',');)
-      rows.back()[names.at(column++)] = std::strtod(field.c_str(), nullptr);
-    EXPECT_EQ(column, names.size()) << line;
+    for (std::size_t c = 0; c < std::min(words.size(), names.size()); ++c) {
+      rows.back().numbers[names[c]] = std::strtod(words[c].c_str(), nullptr);
+      if (names[c] == "status") rows.back().status = words[c];
+    }
   }
   return rows;
 }
 
-std::string xyz(const std::vector<Vec3>& points, const std::vector<Vec3>& normals) {
-  std::ostringstream text;
-  text.precision(17);
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    text << points[i][0] << ' ' << points[i][1] << ' ' << points[i][2];
-    if (!normals.empty()) text << ' ' << normals[i][0] << ' ' << normals[i][1] << ' ' << normals[i][2];
-    text << '\n';
+std::vector<Row> table(const std::string& command) {
+  run_ok(command + " -o table.csv");
+  return read_csv("table.csv");
+}
+
+std::vector<std::vector<double>> obj_lines(const std::string& file, const std::string& keyword) {
+  std::string text = read_text(file);
+  std::ranges::replace(text, '/', ' ');
+  std::istringstream lines(text);
+  std::vector<std::vector<double>> result;
+  for (std::string line, word; std::getline(lines, line);) {
+    std::istringstream words(line);
+    if (!(words >> word) || word != keyword) continue;
+    result.emplace_back();
+    for (double x; words >> x;) result.back().push_back(x);
   }
-  return text.str();
+  return result;
 }
 
-std::vector<Vec3> plane(int m) {
-  std::mt19937 generator(7);
-  std::uniform_real_distribution<double> jitter(-0.3 / m, 0.3 / m);
-  std::vector<Vec3> points;
-  for (int i = 0; i < m; ++i)
-    for (int j = 0; j < m; ++j)
-      points.push_back({(i + 0.5) / m + jitter(generator), (j + 0.5) / m + jitter(generator), 0});
-  std::swap(points[0], points[m / 2 * m + m / 2]);
-  return points;
+std::size_t count(const std::vector<Row>& rows, const std::string& status) {
+  return static_cast<std::size_t>(std::ranges::count(rows, status, &Row::status));
 }
 
-std::vector<Vec3> sphere(int n) {
-  std::vector<Vec3> points = even_sphere(n).points;
-  points[0] = {0, 0, 1};
-  return points;
+testing::AssertionResult has_all(const std::string& text, const Words& parts) {
+  for (const std::string& part : parts)
+    if (text.find(part) == std::string::npos) return testing::AssertionFailure() << "no '" << part << "' in\n" << text;
+  return testing::AssertionSuccess() << text;
 }
+
+void expect_refused(const std::string& command, const std::vector<Refusal>& refusals) {
+  const auto before = contents();
+  for (const auto& [arguments, status, parts] : refusals) {
+    SCOPED_TRACE(command + " " + arguments);
+    const Outcome outcome = run(command + " " + arguments);
+    EXPECT_EQ(outcome.status, status) << outcome.err;
+    EXPECT_TRUE(has(outcome.err, "ahm: error: "));
+    EXPECT_TRUE(has_all(outcome.err, parts));
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_TRUE(contents() == before) << testing::PrintToString(files());
+  }
+}
+
+std::vector<Row> LogmapOf::map(const std::string& bytes, const std::string& options) {
+  write(file_, bytes);
+  err = run_ok("logmap " + file_ + " -o map.csv --json map.json " + options).err;
+  json = read_json("map.json");
+  return read_csv("map.csv");
+}
+
+void LogmapOf::expect_error(const std::string& bytes, const std::string& text, const std::string& options) {
+  write(file_, bytes);
+  expect_refused("logmap " + file_ + " -o refused.csv", {{options, 1, {text}}});
+}
+
+void expect_values(const nlohmann::json& json, const Values& values) {
+  for (const auto& [pointer, value] : values)
+    EXPECT_EQ(json.at(nlohmann::json::json_pointer(pointer)), value) << pointer;
+}
+
+double number(const nlohmann::json& json, const std::string& pointer) {
+  return json.at(nlohmann::json::json_pointer(pointer)).get<double>();
+}
+
+double distance(const Vec3& a, const Vec3& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
 
 }  // namespace ahm::test

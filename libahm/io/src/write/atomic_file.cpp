@@ -181,7 +181,8 @@ std::filesystem::path without_links(std::filesystem::path path) {
   std::error_code ignored;
   for (int links = 0; links < 40 && std::filesystem::is_symlink(path, ignored); ++links)
     path = path.parent_path() / std::filesystem::read_symlink(path, ignored);
-  const auto real = std::filesystem::weakly_canonical(path, ignored);
+  // weakly_canonical returns a relative path if its first folder does not exist.
+  const auto real = std::filesystem::weakly_canonical(std::filesystem::absolute(path, ignored), ignored);
   return ignored || real.empty() ? path : real;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <dlfcn.h>
+#include <errno.h>
 #include <unistd.h>
 
 #include <string>
@@ -20,8 +21,9 @@ inline void* module_symbol(const std::string& module, const char* symbol, std::s
   Dl_info image{};
   std::string folder;
   if (dladdr(&here, &image) != 0 && image.dli_fname != nullptr) folder = image.dli_fname;
-  // For a program that the shell found through PATH, dladdr returns the command name without a folder.
-  if (folder.find('/') == std::string::npos) {
+  // For a program dladdr returns its name on the command line: without a folder if the shell found it through PATH, and possibly
+  // relative to an earlier working directory.
+  if (folder.find('/') == std::string::npos || folder == program_invocation_name) {
     char path[4096];
     const ssize_t length = readlink("/proc/self/exe", path, sizeof path);
     folder.assign(path, length > 0 ? static_cast<std::size_t>(length) : 0);

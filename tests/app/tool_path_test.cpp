@@ -1,0 +1,143 @@
+// Coverage paths, and points at coordinates of a map.
+#include <algorithm>
+#include <cmath>
+
+#include "program.hpp"
+#include "shapes.hpp"
+
+namespace ahm::test {
+namespace {
+
+using Coverage = InFolder;
+
+TEST_F(Coverage, IsARasterOnAPlaneOfPoints) {
+  const auto points = plane(30);  // point 0 is its middle
+  write("plane.xyz", xyz(points));
+  const auto json = summary("coverage plane.xyz --source 0 --radius 0.4 --spacing 0.05 --u-axis 1,0,0 -o path.csv");
+  const auto rows = read_csv("path.csv");
+  ASSERT_GT(rows.size(), 100U);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const Row& p = rows[i];
+    const double across = p["y"] - points[0][1], line = (p["line"] - 8) * 0.05;
+    EXPECT_EQ(p["index"], static_cast<double>(i));
+    EXPECT_NEAR(std::abs(across), std::abs(line), 1e-9);  // the normal of the plane may have either sign
+    EXPECT_NEAR(std::hypot(p["u"], p["v"]), std::hypot(p["x"] - points[0][0], across), 1e-9);
+    EXPECT_NEAR(p["z"], 0, 1e-12);
+    EXPECT_NEAR(std::abs(p["nz"]), 1, 1e-9);
+    EXPECT_NEAR(p["hx"], static_cast<int>(p["line"]) % 2 == 0 ? 1 : -1, 1e-6);
+    EXPECT_NEAR(p["spacing"], 0.05, 1e-6);
+  }
+  expect_values(json, {{"/points", rows.size()}, {"/pieces", 17 - 2}});  // the outermost lines are points
+  EXPECT_GT(number(json, "/covered"), 0.98);
+}
+
+TEST_F(Coverage, IsASpiralOnASphereOfPoints) {
+  write("sphere.xyz", xyz(sphere(3000)));
+  const auto rows = table("coverage sphere.xyz -s 0 --radius 1.2 --spacing 0.1 --pattern spiral");
+  ASSERT_GT(rows.size(), 100U);
+  const double h = 0.07;  // spacing of the points
+  double side = 0;
+  for (const Row& p : rows) {
+    EXPECT_NEAR(std::hypot(p["x"], p["y"], p["z"]), 1, h * h);
+    EXPECT_NEAR(std::acos(std::min(1.0, p["z"])), std::hypot(p["u"], p["v"]), h);
+    const double outwards = p["nx"] * p["x"] + p["ny"] * p["y"] + p["nz"] * p["z"];
+    EXPECT_GT(std::abs(outwards), 0.9);
+    if (side == 0) side = outwards;
+    EXPECT_GT(outwards * side, 0);  // all normals on one side
+    EXPECT_NEAR(p["hx"] * p["nx"] + p["hy"] * p["ny"] + p["hz"] * p["nz"], 0, 1e-9);
+  }
+}
+
+TEST_F(Coverage, StaysOnTheFacesOfAMesh) {
+  // A square of quads with a hole of 4 x 4 cells; some faces are listed with the opposite orientation.
+  constexpr int m = 21;
+  Faces faces = cells(m);
+  std::erase_if(faces, [](const std::vector<int>& face) {
+    const int x = face[0] % m, y = face[0] / m;
+    return x >= 12 && x < 16 && y >= 8 && y < 12;
+  });
+  for (auto& face : faces)
+    if ((face[0] % m + face[0] / m) % 5 == 0) std::swap(face[1], face[3]);
+  write("plate.obj", obj(lattice(m, 0.1), faces));
+  std::map<double, std::map<double, int>> pieces;
+  for (const Row& p : table("coverage plate.obj --source 1,1,0 --radius 0.9 --spacing 0.1 --angle 30")) {
+    EXPECT_FALSE(p["x"] > 1.201 && p["x"] < 1.599 && p["y"] > 0.801 && p["y"] < 1.199) << p["x"] << ' ' << p["y"];
+    EXPECT_NEAR(p["z"], 0, 1e-12);
+    ++pieces[p["line"]][p["piece"]];
+  }
+  EXPECT_GE(std::ranges::count_if(pieces, [](const auto& line) { return line.second.size() > 1; }), 2);
+}
+
+TEST_F(Coverage, IsWrittenAsPolylinesToPly) {
+  write("plane.xyz", xyz(plane(20)));
+  const auto json = summary("coverage plane.xyz --source 0 --radius 0.3 --spacing 0.1 -o path.ply");
+  const std::size_t points = json.at("points"), pieces = json.at("pieces");
+  const std::string text = read_text("path.ply"), body = text.substr(text.find("end_header\n") + 11);
+  EXPECT_TRUE(has(text, "element vertex " + std::to_string(points) + "\n",
+                  "element edge " + std::to_string(points - pieces) + "\n"));
+  EXPECT_EQ(std::ranges::count(body, '\n'), static_cast<std::ptrdiff_t>(2 * points - pieces));
+}
+
+// A plane is exact at any diffusion time.
+TEST_F(Coverage, AndInverseMapAreTheSameOnTheSurroundings) {
+  write("plane.xyz", xyz(plane(40), Points(1600, Vec3{0, 0, 1})));
+  for (const auto& [command, least] : std::map<std::string, std::size_t>{
+           {"coverage plane.xyz --radius 0.2 --spacing 0.04", 50}, {"inverse plane.xyz --at '0.1,0.2 -0.05,0.1'", 2}}) {
+    const auto expected = table(command + " -s 0 --u-axis 1,0,0"),
+               rows = table(command + " -s 0 --u-axis 1,0,0 --local");
+    EXPECT_GE(expected.size(), least);
+    ASSERT_EQ(rows.size(), expected.size());
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      for (const auto& [name, value] : expected[i].numbers)
+        if (!std::isnan(value) || !std::isnan(rows[i][name])) EXPECT_NEAR(rows[i][name], value, 1e-9) << name;
+  }
+}
+
+using Inverse = InFolder;
+
+TEST_F(Inverse, FindsThePointsOfAPlane) {
+  const auto points = plane(30);  // point 0 is its middle
+  write("plane.xyz", xyz(points));
+  write("at.txt", "# pairs\n0 0\n0.1,0.2\n-0.3 0.05\n50 0\n");
+  const auto json = summary("inverse plane.xyz -s 0 --u-axis 1,0,0 --at at.txt -o points.csv");
+  const auto rows = read_csv("points.csv");
+  ASSERT_EQ(rows.size(), 4U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Row& p = rows[i];
+    EXPECT_NEAR(p["x"], points[0][0] + p["u"], 1e-9);
+    EXPECT_NEAR(p["y"], points[0][1] + p["nz"] * p["v"], 1e-9);  // the normal of the plane may have either sign
+    EXPECT_NEAR(p["z"], 0, 1e-12);
+    EXPECT_NEAR(p["hx"], 1, 1e-9);
+  }
+  EXPECT_NE(rows[1]["y"], rows[0]["y"]);
+  EXPECT_TRUE(std::isnan(rows[3]["x"]));  // beyond the boundary
+  expect_values(json, {{"/found", 3}});
+}
+
+TEST_F(Inverse, InvertsALogmapWithTheSameOptions) {
+  const auto points = sphere(2000);
+  write("sphere.xyz", xyz(points));
+  const auto farthest = [&](const std::string& options, const std::string& inverse_options) {
+    const auto map = table("logmap sphere.xyz -s 0 " + options);
+    std::string at;
+    Points expected;
+    for (std::size_t i = 1; i < map.size(); i += 97)
+      if (map[i]["distance"] <= 2) {
+        at += std::to_string(map[i]["u"]) + "," + std::to_string(map[i]["v"]) + " ";
+        expected.push_back(points[i]);
+      }
+    const auto found = table("inverse sphere.xyz -s 0 --at '" + at + "' " + inverse_options);
+    EXPECT_EQ(found.size(), expected.size());
+    EXPECT_GT(found.size(), 5U);
+    double worst = 0;
+    for (std::size_t k = 0; k < found.size(); ++k)
+      worst = std::max(worst, distance(found[k].position(), expected.at(k)));
+    return worst;
+  };
+  for (const char* options : {"", "--t-coef 4", "--strategy march", "--variant localized"})
+    EXPECT_LT(farthest(options, options), 1e-5);
+  EXPECT_GT(farthest("--t-coef 4", ""), 1e-3);
+}
+
+}  // namespace
+}  // namespace ahm::test
