@@ -12,6 +12,7 @@ from . import _core
 from . import _places as places
 from ._options import checked
 from ._surfaces import Surface
+from .typing import Sources, Matrix
 
 
 class Status(enum.IntEnum):
@@ -164,7 +165,7 @@ class LogMap:
         """The method by which the map was computed: "polar", "heat" or "exact"."""
         return self._map.method
 
-    def sample(self, points: Any) -> np.ndarray:
+    def sample(self, points: Sources) -> np.ndarray:
         """The coordinates (u, v) at k points of the surface, as an array (k, 2); NaN where the map is not ok.
 
         points : rows, positions (k, 3), `(faces, barycentric)`, `(edges, t)`. On a cloud, points that are not rows require a map
@@ -179,7 +180,7 @@ class LogMap:
         """
         return self._map.sample(places.points(points, "points", self._surface, empty=True))[0]
 
-    def inverse(self, uv: Any) -> InversePoints:
+    def inverse(self, uv: Matrix) -> InversePoints:
         """The points of the surface at coordinates `uv` (k, 2), world units. `InverseMap` does the same with options.
 
         >>> import ahm
@@ -249,7 +250,7 @@ class InverseMap:
         """(t, 3) int32 rows of the triangles in use, nearest to the source first."""
         return self._core.triangles()
 
-    def __call__(self, uv: Any) -> InversePoints:
+    def __call__(self, uv: Matrix) -> InversePoints:
         """The points of the surface at coordinates `uv` (k, 2), world units."""
         return InversePoints(*self._core.at(arguments.floats(uv, "uv", (None, 2))))
 

@@ -40,10 +40,13 @@ class Places:
                             f"got {arguments.describe(value)}")
         else:
             given = arguments.array(value, self.here())
-            if self.name == "source" and given.dtype.kind in "iu" and given.shape != (self.surface._position_width,):
-                raise ValueError(f"source: expected one row or one position, got shape {given.shape}; use log_maps for several")
+            width = self.surface._position_width
+            if self.single and given.dtype.kind in "iu":
+                several = "; use log_maps for several rows" if self.name == "source" else ""
+                raise ValueError(f"{self.name}: expected one row, or a position of {width} floats; got integers of shape "
+                                 f"{given.shape}{several}")
             if given.ndim != 1:
-                raise ValueError(f"{self.here()}: expected a position of {self.surface._position_width} numbers, got shape {given.shape}")
+                raise ValueError(f"{self.here()}: expected a position of {width} numbers, got shape {given.shape}")
             self._add(POSITION, -1, positions(given[None], self.where, len(self.kinds), self.surface)[0])
 
     def packed(self) -> tuple:
@@ -87,7 +90,9 @@ class Places:
 
 
 def point(value: Any, name: str, surface: Any) -> tuple:
-    """Packs one point: a row, a position, `(face, barycentric)`, or `((row, row), t)` on an edge."""
+    """Packs one point: a row, a position of floats, `(face, barycentric)`, or `((row, row), t)` on an edge.
+
+    A list or array of integers is refused, because it looks like several rows."""
     result = Places(name, True, surface)
     result.add(value)
     return result.packed()
@@ -166,7 +171,7 @@ def _of_positions(values: np.ndarray, name: str) -> tuple:
 
 
 def _in_triangles(value: tuple, name: str, surface: Any) -> Any:
-    """Packs (faces (k,), barycentric (k, 3)) on triangles all at once. Returns None on any fault; points are then checked one by one."""
+    """Packs (faces (k,), barycentric (k, 3)) on triangles all at once. None on any fault; points are then checked one by one."""
     try:
         faces, weights = np.asarray(value[0]), np.asarray(value[1])
     except ValueError:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any, Dict, List, NamedTuple, Optional
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Union
 
 import numpy as np
 
 from . import _arguments as arguments
 from . import _core
+from .typing import Matrix, SurfaceWarning
 
 
 class ClosestPoints(NamedTuple):
@@ -83,12 +84,12 @@ class Surface:
         return np.where((vertex >= 0)[:, None, None], frames[vertex, 1:], np.nan)
 
     @property
-    def report(self) -> Dict[str, Any]:
+    def report(self) -> Mapping[str, Union[bool, int, float, str]]:
         """Statistics of the construction of the graph, by name."""
         return self._body.report()
 
     @property
-    def warnings(self) -> List[Dict[str, Any]]:
+    def warnings(self) -> List[SurfaceWarning]:
         """Problems of the input: dictionaries with a sentence `text`, and `id`, `numbers`, `rows` and `name`.
 
         The C++ header of each surface lists the ids."""
@@ -106,7 +107,7 @@ class Surface:
         body = self._body
         return TangentGraph(*body.csr(), body.frames(), body.length_unit, body.vertex_of_row(), body.row_of_vertex())
 
-    def closest_points(self, positions: Any) -> ClosestPoints:
+    def closest_points(self, positions: Matrix) -> ClosestPoints:
         """The nearest point of the surface for each of k positions: on the faces of a mesh, or in the tangent planes of a cloud.
 
         On a cloud, the point lies in the tangent plane of the nearest row.
