@@ -11,6 +11,7 @@ from . import _arguments as arguments
 from . import _core
 from . import _places as places
 from ._options import checked
+from ._pickles import reduced
 from ._progress import Progress, reporting
 from ._solvers import as_body
 from .typing import Source, Sources, SurfaceLike, Vector
@@ -133,6 +134,10 @@ class LocalMaps:
     def __len__(self) -> int:
         """Number of sources."""
         return len(self.sources)
+
+    def __reduce__(self) -> tuple:
+        return reduced(LocalMaps, self.sources, self.columns, self.indptr, self.indices, self.log, self.distance, self.weight,
+                       self.transport)
 
     def __repr__(self) -> str:
         return f"<ahm.LocalMaps: {len(self)} sources, {len(self.indices)} entries>"

@@ -11,6 +11,7 @@ from . import _arguments as arguments
 from . import _core
 from . import _places as places
 from ._options import checked
+from ._pickles import reduced
 from ._surfaces import Surface
 from .typing import Sources, Matrix
 
@@ -199,7 +200,7 @@ class LogMap:
         return len(self._surface)
 
     def __reduce__(self) -> tuple:
-        return _again, (self._recipe, self._number)
+        return reduced(_again, self._recipe, self._number)
 
     def __copy__(self) -> LogMap:
         return self
@@ -255,7 +256,7 @@ class InverseMap:
         return InversePoints(*self._core.at(arguments.floats(uv, "uv", (None, 2))))
 
     def __reduce__(self) -> tuple:
-        return _inverse_again, (self.map, self._options)
+        return reduced(_inverse_again, self.map, self._options)
 
     def __repr__(self) -> str:
         return f"<ahm.InverseMap: {len(self.triangles)} triangles>"

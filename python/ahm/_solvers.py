@@ -13,6 +13,7 @@ from . import _places as places
 from ._inputs import surface as as_surface
 from ._maps import LogMap
 from ._options import checked
+from ._pickles import reduced
 from ._progress import Progress, reporting
 from ._surfaces import Surface
 from .typing import Source, Sources, SurfaceLike, Vector
@@ -72,7 +73,7 @@ class _Recipe:
             return self.made.pop(number)
 
     def __reduce__(self) -> tuple:
-        return _Recipe, (self.maker, self.at, self.axis, self.options)
+        return reduced(_Recipe, self.maker, self.at, self.axis, self.options)
 
 
 class LogMapSolver(_Maker):
@@ -169,7 +170,7 @@ class LogMapSolver(_Maker):
         return self._core.maps(at, axis, options, report)
 
     def __reduce__(self) -> tuple:
-        return _solver_again, (self.surface, self.options)
+        return reduced(_solver_again, self.surface, self.options)
 
     def __repr__(self) -> str:
         return f"<ahm.LogMapSolver: {self.strategy}, on {self.surface!r}>"
@@ -244,7 +245,7 @@ class PolarMapSolver(_Maker):
         return self._core.maps(at, axis, options, report)
 
     def __reduce__(self) -> tuple:
-        return _polar_again, (self.surface, self.options)
+        return reduced(_polar_again, self.surface, self.options)
 
     def __repr__(self) -> str:
         return f"<ahm.PolarMapSolver: on {self.surface!r}>"
@@ -323,7 +324,7 @@ class ExactGeodesics(_Maker):
         return self._core, self.tolerance
 
     def __reduce__(self) -> tuple:
-        return _geodesics_again, (self.surface, self.tolerance)
+        return reduced(_geodesics_again, self.surface, self.tolerance)
 
     def __repr__(self) -> str:
         return f"<ahm.ExactGeodesics: on {self.surface!r}>"

@@ -12,8 +12,9 @@ from ._geodesics import trace as _trace
 from ._local_maps import LocalMaps
 from ._local_maps import local_maps as _local_maps
 from ._maps import LogMap
+from ._pickles import reduced
 from ._progress import Progress
-from ._solvers import Maker, chosen_maker
+from ._solvers import chosen_maker
 from ._surfaces import Surface
 from .typing import Source, Sources, SurfaceLike, Vector
 
@@ -122,11 +123,7 @@ class SurfaceSolver:
         return _local_maps(self.surface, radius, k, sources=sources, u_axis=u_axis, margin=margin, progress=progress)
 
     def __reduce__(self) -> tuple:
-        return _again, (self._solver,)
+        return reduced(SurfaceSolver, self._solver)
 
     def __repr__(self) -> str:
         return f"<ahm.SurfaceSolver: {self.method}, on {self.surface!r}>"
-
-
-def _again(solver: Maker) -> SurfaceSolver:
-    return SurfaceSolver(solver)

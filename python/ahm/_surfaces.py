@@ -8,6 +8,7 @@ import numpy as np
 
 from . import _arguments as arguments
 from . import _core
+from ._pickles import reduced
 from .typing import Matrix, SurfaceWarning
 
 
@@ -139,7 +140,7 @@ class Surface:
         raise NotImplementedError
 
     def __reduce__(self) -> tuple:
-        return rebuild, (type(self), self._state(), self._options)
+        return reduced(_again, type(self), self._state(), self._options)
 
     def __copy__(self) -> Surface:
         return self
@@ -154,5 +155,5 @@ class Surface:
         return f"{len(self)} rows"
 
 
-def rebuild(type_: type, state: tuple, options: Dict[str, Any]) -> Surface:
+def _again(type_: type, state: tuple, options: Dict[str, Any]) -> Surface:
     return type_(*state, **options)
