@@ -84,7 +84,7 @@ def distance_and_nearest(surface: SurfaceLike, sources: Sources, *, targets: Opt
 
 def _target_rows(targets: Any, on: Any, method: str) -> np.ndarray:
     try:
-        nested = np.ndim(targets) > 1 and len(targets) > 0
+        nested = np.ndim(arguments.unwrapped(targets)) > 1 and len(targets) > 0
     except ValueError:  # parts of different lengths
         nested = True
     if nested:
@@ -141,6 +141,7 @@ def extend(solver: SurfaceLike, points: Sources, values: Union[float, Vector], *
     """
     made = as_solver(solver)
     at = places.points(points, "points", made.surface)
+    values = arguments.unwrapped(values)
     given = arguments.floats([values] if np.ndim(values) == 0 else values, "values", (len(at[2]),), finite=True)
     with reporting(progress) as report:
         return _core.extend(made._core, at, given, report)[0]

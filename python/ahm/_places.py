@@ -28,6 +28,7 @@ class Places:
         return self.where(len(self.kinds))
 
     def add(self, value: Any) -> None:
+        value = _unwrapped(value)
         if is_row(value):
             self._add(ROW, self._row(value), ())
         elif _is_face_point(value):
@@ -105,6 +106,7 @@ def points(value: Any, name: str, surface: Any, empty: bool = False) -> tuple:
 
     empty : whether there may be no points.
     """
+    value = _unwrapped(value)
     if is_row(value) or _is_face_point(value) or _is_edge_point(value, surface):
         return point(value, name, surface)
     if isinstance(value, (str, bytes)) or not hasattr(value, "__len__"):
@@ -210,6 +212,10 @@ def _columns(value: Any) -> Any:
     of_faces = first == 1 and len(value[0]) > 0 and is_row(value[0][0]) and len(value[1]) > 0 and np.ndim(value[1][0]) == 1
     of_edges = first == 2 and np.shape(value[0])[1] == 2 and np.ndim(value[1]) == 1
     return list(zip(*value)) if of_faces or of_edges else None
+
+
+def _unwrapped(value: Any) -> Any:
+    return tuple(arguments.unwrapped(part) for part in value) if type(value) is tuple else value
 
 
 def is_row(value: Any) -> bool:
