@@ -5,9 +5,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 scripts/install_packages.sh parity
-if ! ls build/release/python/ahm/_core.*.so >/dev/null 2>&1; then
-  cmake --preset release
-fi
+cmake --preset release
 cmake --build --preset release --target ahm_python
 mkdir -p build/parity
 g++ -std=c++17 -O1 -frounding-math -I/usr/include/eigen3 -DCGAL_EIGEN3_ENABLED scripts/parity/cgal_distances.cpp -o build/parity/cgal_distances -lgmp -lmpfr
