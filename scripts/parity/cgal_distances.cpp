@@ -27,6 +27,7 @@ int main(int argc, char** argv) {
   for (const auto vertex : mesh.vertices()) {
     std::vector<Kernel::Point_3> path;
     geodesics.shortest_path_points_to_source_points(vertex, std::back_inserter(path));
-    std::printf("%.17g %.17g %zu\n", geodesics.shortest_distance_to_source_points(vertex).first, heat[vertex], path.size());
+    std::printf("%.17g %.17g %zu\n", geodesics.shortest_distance_to_source_points(vertex).first, heat[vertex],
+                path.size());
   }
 }

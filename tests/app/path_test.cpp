@@ -1,7 +1,11 @@
 // Paths and lines over meshes, through the program.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
 
 #include "ahm/io/read.hpp"
 #include "program.hpp"
@@ -224,6 +228,38 @@ TEST(TraceCommand, GoesStraightOverAFlatCloudToItsRim) {
   const auto json = read_json(folder / "line.json");
   EXPECT_EQ(json.at("end").at("at"), "boundary");
   EXPECT_NEAR(json.at("length").get<double>(), 0.5, 0.1);
+}
+
+/// The line of length L at angle a ends where the map of the source has the coordinates L (cos a, sin a).
+TEST(TraceCommand, TakesAnAngleFromTheUAxis) {
+  Folder folder;
+  const std::string cube = folder.write("cube.off", cube_and_square), cloud = folder.write("plane.xyz", xyz(plane(20)));
+  const std::vector<std::array<std::string, 2>> sources = {
+      {cube, "face:2:.2,.3,.3,.2"}, {cube, "3.25,.5,0"}, {cloud, "210"}};
+  for (const auto& [input, source] : sources) {
+    for (const double degrees : {0.0, 30.0, -117.5}) {
+      const std::string angle = std::to_string(degrees),
+                        lines = folder.write("lines.txt", source + " " + angle + " 0.2\n");
+      const Outcome one = run(
+          {"trace", input, "--source", source, "--direction=" + angle, "--length", "0.2", "-o", folder / "line.csv"});
+      ASSERT_EQ(one.status, 0) << one.err;
+      ASSERT_EQ(run({"trace", input, "--lines", lines, "-o", folder / "lines.csv"}).status, 0);
+      const double a = degrees * std::numbers::pi / 180;
+      const Outcome mapped = run({"inverse", input, "--source", source,
+                                  "--at=" + std::to_string(0.2 * std::cos(a)) + "," + std::to_string(0.2 * std::sin(a)),
+                                  "-o", folder / "point.csv"});
+      ASSERT_EQ(mapped.status, 0) << mapped.err;
+      const auto line = read_numbers(folder / "line.csv"), of_file = read_numbers(folder / "lines.csv"),
+                 point = read_numbers(folder / "point.csv");
+      for (const char* axis : {"x", "y", "z"}) {
+        EXPECT_NEAR(line.back().at(axis), point.front().at(axis), 2e-6) << source << " " << degrees;
+        EXPECT_NEAR(of_file.back().at(axis), line.back().at(axis), 1e-12);
+      }
+    }
+  }
+  const Outcome wrong =
+      run({"trace", cube, "--source", "0", "--direction", "30,5", "--length", "1", "-o", folder / "line.csv"});
+  EXPECT_NE(wrong.err.find("--direction"), std::string::npos) << wrong.err;
 }
 
 TEST(TraceCommand, GoesRoundACube) {
