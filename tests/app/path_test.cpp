@@ -235,7 +235,7 @@ TEST(TraceCommand, TakesAnAngleFromTheUAxis) {
   Folder folder;
   const std::string cube = folder.write("cube.off", cube_and_square), cloud = folder.write("plane.xyz", xyz(plane(20)));
   const std::vector<std::array<std::string, 2>> sources = {
-      {cube, "face:2:.2,.3,.3,.2"}, {cube, "3.25,.5,0"}, {cloud, "210"}};
+      {cube, "face:2:.2,.3,.3,.2"}, {cube, "face:6:.25,.25,.25,.25"}, {cloud, "0"}};
   for (const auto& [input, source] : sources) {
     for (const double degrees : {0.0, 30.0, -117.5}) {
       const std::string angle = std::to_string(degrees),
