@@ -18,7 +18,7 @@ words() {
 }
 
 sources() {
-  git ls-files "$@" ':!benchmarks' ':!examples' ':!python' ':!libahm/conformance' ':!tests' ':!backends/pointcloud/pcl' ':!*/pcl_*' \
+  git ls-files "$@" ':!benchmarks' ':!examples' ':!python' ':!scripts' ':!libahm/conformance' ':!tests' ':!backends/pointcloud/pcl' ':!*/pcl_*' \
     ':!*/no_*.cpp' ':!*/stb.cpp' ':!*/pack.cpp'
 }
 

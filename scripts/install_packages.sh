@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # Installs the Debian packages for a task. Prints nothing if all are installed.
-#   install_packages.sh [program|tests|checks|docs|packages]
+#   install_packages.sh [program|tests|checks|docs|packages|parity]
 # program: the program without PCL, for scripts/demo.sh; tests (default): everything, including tests and benchmarks;
 # checks: tests, and the tools of clang; docs: tests, and the tools for the documentation site; packages: tests, and the
-# tools for Debian packages.
+# tools for Debian packages; parity: tests, and the libraries of scripts/parity.sh.
 set -euo pipefail
 
 program=(
@@ -31,13 +31,15 @@ tests=(
 checks=("${tests[@]}" clang libclang-rt-14-dev clang-format clang-tidy)
 debian=("${tests[@]}" dpkg-dev pkg-config file debootstrap)
 docs=("${tests[@]}" doxygen python3-sphinx python3-myst-parser furo python3-sphinx-copybutton linkchecker pngquant)
+parity=("${tests[@]}" python3-vtk9 python3-open3d python3-nibabel connectome-workbench python3-pandas python3-torch)
 case "${1:-tests}" in
   program) packages=("${program[@]}") ;;
   tests) packages=("${tests[@]}") ;;
   checks) packages=("${checks[@]}") ;;
   docs) packages=("${docs[@]}") ;;
   packages) packages=("${debian[@]}") ;;
-  *) echo "error: install_packages.sh [program|tests|checks|docs|packages]" >&2; exit 2 ;;
+  parity) packages=("${parity[@]}") ;;
+  *) echo "error: install_packages.sh [program|tests|checks|docs|packages|parity]" >&2; exit 2 ;;
 esac
 
 missing=()

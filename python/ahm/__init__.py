@@ -15,7 +15,7 @@ from . import _interpreter  # first: loading the extension in a subinterpreter w
 
 import atexit as _atexit
 
-from . import _core, shapes
+from . import _core, _pickles, shapes
 from ._applications import Cells, Center, Stroke, cells, farthest_points, geometric_median, karcher_mean, stroke
 from ._core import (Cancelled, Error, InvalidArgument, InvalidGeometry, InvalidGraph, IoError, NotPositiveDefinite,
                     ResourceExhausted)
@@ -34,6 +34,8 @@ from ._surfaces import ClosestPoints, Surface, TangentGraph
 from ._textures import Atlas, Coverage, Decal, atlas, coverage, decal, decal_coordinates
 
 _atexit.register(_core.end)
+for _result in [_value for _value in vars().values() if isinstance(_value, type) and issubclass(_value, tuple)]:
+    _result.__reduce__ = _pickles.reduced_tuple  # type: ignore[assignment]
 
 __version__ = "0.1.0"
 
@@ -42,8 +44,8 @@ __all__ = [
     "Error", "ExactGeodesics", "Graph", "Grid", "InvalidArgument", "InvalidGeometry", "InvalidGraph", "InverseMap",
     "InversePoints", "IoError", "LocalMaps", "LocalStroke", "LogMap", "LogMapSolver", "MapSource",
     "NotPositiveDefinite", "Operators", "PaddedMaps", "Path", "PointCloud", "PolarMapSolver", "PolygonMesh",
-    "ResourceExhausted",
-    "Status", "Stroke", "Surface", "SurfaceSolver", "TangentGraph", "TriangleMesh", "atlas", "cells", "coverage", "curvature", "decal",
+    "ResourceExhausted", "Status", "Stroke", "Surface", "SurfaceSolver", "TangentGraph", "TriangleMesh", "atlas", "cells",
+    "coverage", "curvature", "decal",
     "decal_coordinates", "distance", "distance_and_gradient", "distance_and_nearest", "extend", "farthest_points",
     "geodesic_loop", "geodesic_path", "geodesic_paths", "geometric_median", "karcher_mean", "local_maps",
     "local_stroke", "log_map", "operators", "read", "shapes", "stroke", "surface", "trace", "transport",

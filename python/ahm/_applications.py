@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Dict, NamedTuple, Optional, Tuple
+from typing import Any, Dict, NamedTuple, Optional, Tuple, Union
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from ._maps import LogMap
 from ._options import checked
 from ._progress import Progress, reporting
 from ._solvers import ExactGeodesics, Maker, PolarMapSolver, as_body, as_maker, chosen_maker, tolerance_of
+from .typing import Source, Sources, SurfaceLike, Vector, Matrix
 
 
 class Stroke(NamedTuple):
@@ -26,7 +27,7 @@ class Stroke(NamedTuple):
     jump: float  #: longest of the pieces into which the curve was cut, world units
 
 
-def stroke(solver: Any, points: Any, *, closed: bool = False, shape: str = "line", positions: Any = None,
+def stroke(solver: SurfaceLike, points: Sources, *, closed: bool = False, shape: str = "line", positions: Optional[Matrix] = None,
            method: Optional[str] = None, tolerance: Optional[float] = None, radius: Optional[float] = None,
            frames: bool = True, progress: Progress = None) -> Stroke:
     """Coordinates along a curve: the coordinates of the nearest point of the curve, plus the log map from there.
@@ -91,7 +92,7 @@ class Cells(NamedTuple):
     distance: np.ndarray  #: (n,) geodesic distance from that source, world units; NaN in components without a source
 
 
-def cells(surface: Any, sources: Any, *, method: Optional[str] = None, tolerance: Optional[float] = None,
+def cells(surface: SurfaceLike, sources: Sources, *, method: Optional[str] = None, tolerance: Optional[float] = None,
           progress: Progress = None) -> Cells:
     """Geodesic Voronoi cells: for every row, which source is nearest. Takes one pass for any number of sources.
 
@@ -124,7 +125,7 @@ def _unfold_or_exact(surface: Any, method: Optional[str]) -> str:
     return arguments.choice(method, "method", ("unfold", "exact"))
 
 
-def farthest_points(surface: Any, count: int, first: Any = 0, *, method: Optional[str] = None,
+def farthest_points(surface: SurfaceLike, count: int, first: Source = 0, *, method: Optional[str] = None,
                     tolerance: Optional[float] = None, progress: Progress = None) -> np.ndarray:
     """Farthest point sampling: `count` rows, beginning with `first`; each is the farthest from the previous ones.
 
@@ -167,11 +168,11 @@ class Center(NamedTuple):
     #: whether the search converged.
     residual: float
     #: The center in a form that other functions accept as a point: (face, barycentric) on a mesh, otherwise the position, or None
-    point: Any
+    point: Union[None, Tuple[int, np.ndarray], np.ndarray]
 
 
-def karcher_mean(solver: Any, points: Any, weights: Any = None, *, start: Any = None, method: str = "auto",
-                 tolerance: Optional[float] = None, max_maps: int = 50, radius: Optional[float] = None,
+def karcher_mean(solver: SurfaceLike, points: Sources, weights: Optional[Vector] = None, *, start: Optional[Source] = None,
+                 method: str = "auto", tolerance: Optional[float] = None, max_maps: int = 50, radius: Optional[float] = None,
                  progress: Progress = None) -> Center:
     """The Karcher mean (Riemannian center of mass): a local minimum of the weighted sum of squared distances [Kar77].
 
@@ -195,8 +196,8 @@ def karcher_mean(solver: Any, points: Any, weights: Any = None, *, start: Any = 
     return _center(chosen_maker(solver, method, tolerance=tolerance), points, weights, False, start, max_maps, radius, progress)
 
 
-def geometric_median(solver: Any, points: Any, weights: Any = None, *, start: Any = None, method: str = "auto",
-                     tolerance: Optional[float] = None, max_maps: int = 50, radius: Optional[float] = None,
+def geometric_median(solver: SurfaceLike, points: Sources, weights: Optional[Vector] = None, *, start: Optional[Source] = None,
+                     method: str = "auto", tolerance: Optional[float] = None, max_maps: int = 50, radius: Optional[float] = None,
                      progress: Progress = None) -> Center:
     """The geometric median: a local minimum of the weighted sum of distances, near the start [FVJ09].
 
@@ -218,7 +219,7 @@ def _center(made: Maker, points: Any, weights: Any, median: bool, start: Any, ma
     with reporting(progress) as report:
         row, offset, position, spread, maps, converged, face, inside, seen = _core.center(
             made._maker, at, given, median, begin, checked(max_maps=max_maps, radius=radius), report)
-    point = (face, inside) if face is not None else position if on._body.has_positions else None
+    point = (face, inside) if face is not None and inside is not None else position if on._body.has_positions else None
     residual = _residual(seen, given if len(given) else np.ones(len(seen)), median, 1e-9 * on.mean_edge_length)
     return Center(row, offset, position, spread, maps, converged, residual, point)
 

@@ -15,12 +15,8 @@ def array(value: Any, name: str) -> np.ndarray:
     """Converts to an array of real numbers: from an array, a list, or an object with `__array__`, DLPack or `numpy()`."""
     if isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value):
         raise ValueError(f"{name}: some entries are masked; fill them or remove their rows")
-    if not hasattr(value, "__array__") and hasattr(value, "__dlpack__"):
-        value = np.from_dlpack(value)
-    if not isinstance(value, np.ndarray) and not hasattr(value, "__array__") and callable(getattr(value, "numpy", None)):
-        value = value.numpy()
     try:
-        result = np.asarray(value)
+        result = np.asarray(unwrapped(value))
     except (ValueError, TypeError, OverflowError, RuntimeError, BufferError) as error:  # for example, tensors in GPU memory
         raise ValueError(f"{name}: not an array of numbers ({error})") from None
     if result.dtype.kind == "O" and result.ndim > 0:
@@ -28,6 +24,15 @@ def array(value: Any, name: str) -> np.ndarray:
     if result.dtype.kind not in "iuf" and not (result.size == 0 and result.dtype.kind == "f"):
         raise TypeError(f"{name}: expected real numbers, got {describe(value, result)}")
     return result
+
+
+def unwrapped(value: Any) -> Any:
+    """The numpy array of an object that has DLPack or `numpy()`, but not `__array__`. Other objects are returned unchanged."""
+    if hasattr(value, "__array__"):
+        return value
+    if hasattr(value, "__dlpack__"):
+        return np.from_dlpack(value)
+    return value.numpy() if callable(getattr(value, "numpy", None)) else value
 
 
 def _of_objects(given: np.ndarray, name: str) -> np.ndarray:
@@ -80,6 +85,7 @@ def integers(value: Any, name: str, ndim: int, low: int = INT32.min, high: int =
 
 def rows(value: Any, name: str, count: int) -> np.ndarray:
     """Checks one row number, or a list, of a surface with `count` rows."""
+    value = unwrapped(value)
     single = np.ndim(value) == 0 and not isinstance(value, (str, bytes))
     if single:
         value = [value]
@@ -97,7 +103,7 @@ def rows(value: Any, name: str, count: int) -> np.ndarray:
 
 
 def row(value: Any, name: str, count: int) -> int:
-    if np.ndim(value) != 0:
+    if np.ndim(unwrapped(value)) != 0:
         raise ValueError(f"{name}: expected one row, got shape {np.shape(value)}")
     return int(rows(value, name, count)[0])
 

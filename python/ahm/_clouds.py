@@ -11,6 +11,7 @@ from . import _core
 from ._options import checked
 from ._progress import Progress, reporting
 from ._surfaces import Surface
+from .typing import Vector, Matrix
 
 
 class PointCloud(Surface):
@@ -36,9 +37,10 @@ class PointCloud(Surface):
     <ahm.PointCloud: 642 points>
     """
 
-    def __init__(self, points: Any, normals: Any = None, *, k: Optional[int] = None, normal_signs: str = "automatic",
-                 smooth: Optional[float] = None, max_edge_ratio: float = 3.0, drop_non_finite: bool = False,
-                 rows: Any = None, threads: int = 0, progress: Progress = None) -> None:
+    def __init__(self, points: Matrix, normals: Optional[Matrix] = None, *, k: Optional[int] = None,
+                 normal_signs: str = "automatic", smooth: Optional[float] = None, max_edge_ratio: float = 3.0,
+                 drop_non_finite: bool = False, rows: Optional[Vector] = None, threads: int = 0,
+                 progress: Progress = None) -> None:
         given = arguments.floats(points, "points", (None, 3))
         self._normals = None
         if normals is not None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple, Optional
+from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Union
 
 import numpy as np
 
@@ -12,10 +12,14 @@ from . import _places as places
 from ._options import checked
 from ._progress import Progress, reporting
 from ._solvers import as_body, as_solver, tolerance_of
+from .typing import Sources, SurfaceLike, Vector, Matrix
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_matrix
 
 
-def distance(surface: Any, sources: Any, *, targets: Any = None, method: str = "unfold", radius: Optional[float] = None,
-             tolerance: Optional[float] = None, progress: Progress = None) -> np.ndarray:
+def distance(surface: SurfaceLike, sources: Sources, *, targets: Optional[Sources] = None, method: str = "unfold",
+             radius: Optional[float] = None, tolerance: Optional[float] = None, progress: Progress = None) -> np.ndarray:
     """Geodesic distance from the nearest of one or more sources, world units.
 
     surface : a `Surface`, a solver (method "heat" reuses the factors of a `LogMapSolver`), or what `ahm.surface` takes.
@@ -43,7 +47,7 @@ def distance(surface: Any, sources: Any, *, targets: Any = None, method: str = "
                                 progress=progress)[0]
 
 
-def distance_and_nearest(surface: Any, sources: Any, *, targets: Any = None, method: str = "unfold",
+def distance_and_nearest(surface: SurfaceLike, sources: Sources, *, targets: Optional[Sources] = None, method: str = "unfold",
                          radius: Optional[float] = None, tolerance: Optional[float] = None,
                          progress: Progress = None) -> tuple:
     """The result of `distance`, and the number of the nearest source: int32, -1 where none is connected; None for method "heat".
@@ -80,7 +84,7 @@ def distance_and_nearest(surface: Any, sources: Any, *, targets: Any = None, met
 
 def _target_rows(targets: Any, on: Any, method: str) -> np.ndarray:
     try:
-        nested = np.ndim(targets) > 1 and len(targets) > 0
+        nested = np.ndim(arguments.unwrapped(targets)) > 1 and len(targets) > 0
     except ValueError:  # parts of different lengths
         nested = True
     if nested:
@@ -96,7 +100,7 @@ class DistanceField(NamedTuple):
     gradient: np.ndarray
 
 
-def distance_and_gradient(solver: Any, sources: Any, *, progress: Progress = None) -> DistanceField:
+def distance_and_gradient(solver: SurfaceLike, sources: Sources, *, progress: Progress = None) -> DistanceField:
     """Distance and its gradient by the heat method: length and direction of the radial field (Lemma 1 of [SS25]).
 
     No distance is differentiated.
@@ -117,7 +121,7 @@ def distance_and_gradient(solver: Any, sources: Any, *, progress: Progress = Non
         return DistanceField(*_core.heat_distance(made._core, at, report))
 
 
-def extend(solver: Any, points: Any, values: Any, *, progress: Progress = None) -> np.ndarray:
+def extend(solver: SurfaceLike, points: Sources, values: Union[float, Vector], *, progress: Progress = None) -> np.ndarray:
     """Extends scalars from points to all rows. Each row gets the value of the nearest point, blended at ties ([SSC19] Sec. 4).
 
     solver : a `LogMapSolver`, or a surface.
@@ -137,12 +141,13 @@ def extend(solver: Any, points: Any, values: Any, *, progress: Progress = None) 
     """
     made = as_solver(solver)
     at = places.points(points, "points", made.surface)
+    values = arguments.unwrapped(values)
     given = arguments.floats([values] if np.ndim(values) == 0 else values, "values", (len(at[2]),), finite=True)
     with reporting(progress) as report:
         return _core.extend(made._core, at, given, report)[0]
 
 
-def transport(solver: Any, points: Any, vectors: Any, *, progress: Progress = None) -> np.ndarray:
+def transport(solver: SurfaceLike, points: Sources, vectors: Union[Vector, Matrix], *, progress: Progress = None) -> np.ndarray:
     """Parallel transports vectors from points along shortest geodesic paths to all rows ([SSC19] Alg. 1).
 
     solver : a `LogMapSolver`, or a surface.
@@ -177,7 +182,7 @@ class Curvature(NamedTuple):
     direction: np.ndarray  #: (n, 3) unit vector in space along which the curvature is kappa_1, up to its sign
 
 
-def curvature(surface: Any, *, threads: int = 0, progress: Progress = None) -> Curvature:
+def curvature(surface: SurfaceLike, *, threads: int = 0, progress: Progress = None) -> Curvature:
     """Principal curvatures and directions of a paraboloid fitted around every row [CP05].
 
     surface : a mesh or a cloud.
@@ -202,22 +207,22 @@ class Operators(NamedTuple):
     Matrices have one row per vertex of the graph, and are in units of the graph: a length of 1 is `length_unit` world units.
     """
 
-    mass: Any  #: (n, n) mass matrix M, diagonal
-    laplacian: Any  #: (n, n) scalar graph Laplacian L, positive semi-definite: (L u)_i = sum_j w_ij (u_i - u_j)
-    connection_laplacian: Any  #: connection Laplacian L^nabla: (n, n) complex Hermitian, or (n d, n d) real
-    transports: Any  #: transports R_ji from the frame of j to the frame of i: (n, n) complex, or (n d, n d) real blocks
+    mass: csr_matrix  #: (n, n) mass matrix M, diagonal
+    laplacian: csr_matrix  #: (n, n) scalar graph Laplacian L, positive semi-definite: (L u)_i = sum_j w_ij (u_i - u_j)
+    connection_laplacian: csr_matrix  #: connection Laplacian L^nabla: (n, n) complex Hermitian, or (n d, n d) real
+    transports: csr_matrix  #: transports R_ji from the frame of j to the frame of i: (n, n) complex, or (n d, n d) real blocks
     tau: np.ndarray  #: (n,) diffusion time of every vertex, by its component, squared graph units
     length_unit: float  #: length of one graph unit, world units
     vertex_of_row: np.ndarray  #: (rows,) int32 vertex of every row of the input; -1: removed
     row_of_vertex: np.ndarray  #: (n,) int32 row of every vertex; -1: the vertex is not in the input
 
     @property
-    def A(self) -> Any:
+    def A(self) -> csr_matrix:
         """A = M + tau L, symmetric positive definite."""
         return _plus(self.mass, self.tau, self.laplacian)
 
     @property
-    def B(self) -> Any:
+    def B(self) -> csr_matrix:
         """B = M + tau L^nabla, Hermitian positive definite."""
         repeat = self.connection_laplacian.shape[0] // len(self.tau)
         from scipy.sparse import identity, kron
@@ -232,7 +237,7 @@ def _plus(mass: Any, tau: np.ndarray, laplacian: Any) -> Any:
     return (mass + diags(tau) @ laplacian).tocsr()
 
 
-def operators(surface: Any, *, t_coef: float = 1.0) -> Operators:
+def operators(surface: SurfaceLike, *, t_coef: float = 1.0) -> Operators:
     """The matrices of the heat method on a surface, by vertices of its graph (`Operators.vertex_of_row`).
 
     surface : a `Surface`, or what `ahm.surface` takes.

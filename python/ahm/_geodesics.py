@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, List, NamedTuple, Optional
+from typing import List, NamedTuple, Optional, Union
 
 import numpy as np
 
@@ -11,16 +11,17 @@ from . import _core
 from . import _places as places
 from ._progress import Progress, reporting
 from ._solvers import as_body
+from .typing import Source, Sources, SurfaceLike, Vector
 
 
 class Path(NamedTuple):
     """A path on a mesh or a cloud. Consecutive points lie in one triangle of the mesh, or in neighboring tangent planes."""
 
     points: np.ndarray  #: (k, 3) points of the path in space, world units
-    face: Any  #: (k,) int32 face of the input in which each point lies; None on clouds
+    face: Optional[np.ndarray]  #: (k,) int32 face of the input in which each point lies; None on clouds
     #: (k, 3) barycentric coordinates of each point in its face; a list of k arrays if not all faces are triangles; None on clouds.
     #: On polygons that are not flat, the path runs over their triangles; the coordinates are those of the nearest point of the face.
-    barycentric: Any
+    barycentric: Union[None, np.ndarray, List[np.ndarray]]
     length: float  #: length of the path, world units
     complete: bool  #: False for a trace that ended at the boundary
 
@@ -28,8 +29,8 @@ class Path(NamedTuple):
         return f"<ahm.Path: {len(self.points)} points, {self.length:.6g} long{'' if self.complete else ', to the boundary'}>"
 
 
-def geodesic_path(surface: Any, stops: Any, to: Any = None, *, closed: bool = False, fast: bool = False, taut: bool = False,
-                  progress: Progress = None) -> Optional[Path]:
+def geodesic_path(surface: SurfaceLike, stops: Sources, to: Optional[Source] = None, *, closed: bool = False, fast: bool = False,
+                  taut: bool = False, progress: Progress = None) -> Optional[Path]:
     """The shortest path between two points, or through several stops in their order. On meshes it is exact up to rounding.
 
     surface : a mesh or a cloud, or what `ahm.surface` takes. On clouds, the length has an error of second order in the spacing,
@@ -62,7 +63,7 @@ def geodesic_path(surface: Any, stops: Any, to: Any = None, *, closed: bool = Fa
     return None if found is None else Path(*found)
 
 
-def geodesic_loop(surface: Any, stops: Any, *, fast: bool = False, progress: Progress = None) -> Optional[Path]:
+def geodesic_loop(surface: SurfaceLike, stops: Sources, *, fast: bool = False, progress: Progress = None) -> Optional[Path]:
     """A closed geodesic: the closed path through the stops, pulled taut until it is locally shortest everywhere [XW07].
 
     stops : three or more points, as in `geodesic_path`, around a handle, a limb or a hole that holds the loop.
@@ -81,7 +82,7 @@ def geodesic_loop(surface: Any, stops: Any, *, fast: bool = False, progress: Pro
     return geodesic_path(surface, stops, closed=True, fast=fast, taut=True, progress=progress)
 
 
-def geodesic_paths(surface: Any, sources: Any, targets: Any, *, pairwise: bool = False, fast: bool = False,
+def geodesic_paths(surface: SurfaceLike, sources: Sources, targets: Sources, *, pairwise: bool = False, fast: bool = False,
                    progress: Progress = None) -> List[Optional[Path]]:
     """The shortest path to every target from the nearest of the sources, computed by one propagation.
 
@@ -113,7 +114,7 @@ def geodesic_paths(surface: Any, sources: Any, targets: Any, *, pairwise: bool =
     return [None if one is None else Path(*one) for one in found]
 
 
-def trace(surface: Any, start: Any, direction: Any, length: Optional[float] = None, *,
+def trace(surface: SurfaceLike, start: Source, direction: Vector, length: Optional[float] = None, *,
           progress: Progress = None) -> Path:
     """The straightest geodesic from a point in a direction: the exponential map [PS98].
 

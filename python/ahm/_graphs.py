@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any, Optional, Tuple
+from typing import Any, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
 from . import _arguments as arguments
 from . import _core
 from ._surfaces import Surface
+from .typing import Array, Matrix, Vector
 
 
 class Grid(Surface):
@@ -27,7 +28,8 @@ class Grid(Surface):
     [1.5, 1.0]
     """
 
-    def __init__(self, shape: Any, spacing: Any = 1.0, origin: Any = None, blocked: Any = None) -> None:
+    def __init__(self, shape: Vector, spacing: Union[float, Vector] = 1.0, origin: Optional[Vector] = None,
+                 blocked: Union[None, Array, Sequence[Sequence[bool]], Sequence[Sequence[Sequence[bool]]]] = None) -> None:
         self._shape = arguments.integers(shape, "shape", 1)
         d = len(self._shape)
         if np.ndim(spacing) == 0 and not isinstance(spacing, (str, bytes, bool)):
@@ -53,7 +55,7 @@ class Grid(Surface):
         """Number of vertices along each axis. `x.reshape(grid.shape, order="F")` is a result `x` as an array over the grid."""
         return tuple(int(s) for s in self._shape)
 
-    def row(self, steps: Any) -> int:
+    def row(self, steps: Vector) -> int:
         """The row of the vertex at `steps`, its integer coordinates along the axes. Raises ValueError outside the grid.
 
         >>> import ahm
@@ -85,7 +87,7 @@ class Graph(Surface):
     masses : (n,) dual areas or volumes, > 0, in units of `length_unit` to the power d.
     frames : (n, 4, 3) origin, x axis, y axis and normal of every vertex in space, world units; or None.
     mean_edge_length : in units of `length_unit`; None: the mean of |logs|.
-    length_unit : length of 1 in `logs` and `mean_edge_length`, world units. Results are in world units.
+    length_unit : length of 1 in `logs` and `mean_edge_length`, a power of two, world units. Results are in world units.
     is_delaunay : whether the graph is that of a Delaunay triangulation, d = 2. Distances are then computed by a wavefront.
 
     Raises InvalidGraph (a ValueError) naming the first violation of the graph contract, with its vertex or edge.
@@ -97,8 +99,9 @@ class Graph(Surface):
     [0.0, 1.0, 2.0]
     """
 
-    def __init__(self, indptr: Any, indices: Any, weights: Any, logs: Any, transports: Any, masses: Any, *,
-                 frames: Any = None, mean_edge_length: Optional[float] = None, length_unit: float = 1.0,
+    def __init__(self, indptr: Vector, indices: Vector, weights: Vector, logs: Matrix, transports: Union[Vector, Matrix],
+                 masses: Vector, *, frames: Union[None, Array, Sequence[Matrix]] = None,
+                 mean_edge_length: Optional[float] = None, length_unit: float = 1.0,
                  is_delaunay: bool = False) -> None:
         begin = arguments.integers(indptr, "indptr", 1, 0, 2**62, np.int64)
         neighbors = arguments.integers(indices, "indices", 1)
@@ -124,7 +127,10 @@ class Graph(Surface):
             turns = arguments.floats(transports, "transports", (e, d, d), finite=True)
         if turns.ndim == 2 and d != 2:
             raise ValueError(f"transports: (cos, sin) requires logs of shape (e, 2), got (e, {d})")
-        self._options = {"length_unit": arguments.real(length_unit, "length_unit", positive=True),
+        unit = arguments.real(length_unit, "length_unit", positive=True)
+        if np.frexp(unit)[0] != 0.5:
+            raise ValueError(f"length_unit: {unit} is not a power of two")
+        self._options = {"length_unit": unit,
                          "is_delaunay": arguments.flag(is_delaunay, "is_delaunay")}
         if mean_edge_length is not None:
             self._options["mean_edge_length"] = arguments.real(mean_edge_length, "mean_edge_length", positive=True)

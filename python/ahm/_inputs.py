@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from typing import Any, Dict, List, Optional, Union
+from typing import Any, Dict, List, Optional
 
 import numpy as np
 
@@ -12,9 +12,10 @@ from . import _core
 from ._clouds import PointCloud
 from ._meshes import Compressed, PolygonMesh, TriangleMesh
 from ._surfaces import Surface
+from .typing import FileName, SurfaceInput
 
 
-def read(path: Union[str, "os.PathLike[str]"], kind: Optional[str] = None, **options: Any) -> Surface:
+def read(path: FileName, kind: Optional[str] = None, **options: object) -> Surface:
     """Reads a surface from a file.
 
     Formats: .ply, .pcd, .las, .xyz, .txt, .asc, .csv, .pts, .off, .obj, .stl, .glb, .gltf, .vtp and .vtk, each also compressed
@@ -34,22 +35,23 @@ def read(path: Union[str, "os.PathLike[str]"], kind: Optional[str] = None, **opt
     Raises IoError (an OSError) naming the file and the problem. Also raises as the class of the surface.
     """
     got = _core.read_file(arguments.file_name(path, "path"))
+    given: Dict[str, Any] = dict(options)
     begin, corners = got["face_begin"], got["face_vertices"]
     if kind is None:
         kind = "cloud" if begin is None else "triangles" if (np.diff(begin) == 3).all() else "polygons"
     arguments.choice(kind, "kind", ("triangles", "polygons", "cloud"))
     if kind == "cloud":
-        return PointCloud(got["points"], got["normals"], **options)
+        return PointCloud(got["points"], got["normals"], **given)
     if begin is None:
         raise ValueError(f"kind: {os.fsdecode(path)} contains no faces; use kind='cloud'")
     if kind == "polygons":
-        return PolygonMesh(got["points"], Compressed(begin, corners), **options)
+        return PolygonMesh(got["points"], Compressed(begin, corners), **given)
     if not (np.diff(begin) == 3).all():
         raise ValueError(f"kind: {os.fsdecode(path)} contains faces that are not triangles; use kind='polygons'")
-    return TriangleMesh(got["points"], corners.reshape(-1, 3), **options)
+    return TriangleMesh(got["points"], corners.reshape(-1, 3), **given)
 
 
-def surface(thing: Any, **options: Any) -> Surface:
+def surface(thing: SurfaceInput, **options: object) -> Surface:
     """Makes a surface from an array, a tuple (V, F), or an object of PyVista, trimesh, Open3D or meshio.
 
     thing : a `Surface` (returned unchanged), an (n, 3) array (a cloud), a tuple `(vertices, faces)`, or an object with points
@@ -83,7 +85,7 @@ def surface(thing: Any, **options: Any) -> Surface:
     if isinstance(thing, (str, bytes, os.PathLike)):
         raise TypeError(f"surface: {thing!r:.60} is a name; read files with ahm.read")
     if (hasattr(thing, "__len__") or hasattr(thing, "__array__")) and not isinstance(thing, (dict, set)):
-        return PointCloud(thing, **options)
+        return _mesh(thing, None, options)
     raise TypeError(f"surface: {type(thing).__name__} has no points, vertices or faces")
 
 

@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple, Optional
+from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Union
 
 import numpy as np
+from numpy.typing import DTypeLike
 
 from . import _arguments as arguments
 from . import _core
 from . import _places as places
 from ._options import checked
+from ._pickles import reduced
 from ._progress import Progress, reporting
 from ._solvers import as_body
+from .typing import Source, Sources, SurfaceLike, Vector
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_matrix
 
 
 class PaddedMaps(NamedTuple):
@@ -52,7 +58,7 @@ class LocalMaps:
         self.indptr, self.indices, self.log = indptr, indices, log
         self.distance, self.weight, self.transport = distance, weight, transport
 
-    def csr(self, values: Any = "distance") -> Any:
+    def csr(self, values: Union[str, Vector] = "distance") -> csr_matrix:
         """One value per entry as a scipy.sparse.csr_matrix of shape (sources, rows). Its arrays are copies.
 
         The columns of a matrix row are in order of distance, not sorted.
@@ -68,28 +74,28 @@ class LocalMaps:
         """
         from scipy.sparse import csr_matrix
 
-        if isinstance(values, str):
-            arguments.choice(values, "values", ("distance", "weight", "u", "v", "transport"))
-            if values in "uv":
-                values = self.log[:, "uv".index(values)]
-            elif values == "transport":
-                if self.transport.ndim != 2:
-                    raise ValueError("values: 'transport' requires rotations of the plane; these transports are matrices")
-                values = self.transport[:, 0] + 1j * self.transport[:, 1]
-            else:
-                values = getattr(self, values)
-        values = np.asarray(values)
-        if values.dtype.kind not in "biufc":
-            raise TypeError(f"values: expected numbers, got {arguments.describe(values, values)}")
-        if values.shape != self.indices.shape:
-            raise ValueError(f"values: expected shape ({len(self.indices)},), got {values.shape}")
+        entries = self._named(values) if isinstance(values, str) else np.asarray(values)
+        if entries.dtype.kind not in "biufc":
+            raise TypeError(f"values: expected numbers, got {arguments.describe(values, entries)}")
+        if entries.shape != self.indices.shape:
+            raise ValueError(f"values: expected shape ({len(self.indices)},), got {entries.shape}")
         # scipy requires one type for both index arrays, and modifies them in place.
         index = np.int32 if len(self.indices) <= np.iinfo(np.int32).max else np.int64
-        result = csr_matrix((len(self.sources), self.columns), dtype=values.dtype)
-        result.data, result.indices, result.indptr = values.copy(), self.indices.astype(index), self.indptr.astype(index)
+        result = csr_matrix((len(self.sources), self.columns), dtype=entries.dtype)
+        result.data, result.indices, result.indptr = entries.copy(), self.indices.astype(index), self.indptr.astype(index)
         return result
 
-    def padded(self, k: Optional[int] = None, dtype: Any = np.float32) -> PaddedMaps:
+    def _named(self, values: str) -> np.ndarray:
+        arguments.choice(values, "values", ("distance", "weight", "u", "v", "transport"))
+        if values in "uv":
+            return self.log[:, "uv".index(values)]
+        if values == "transport":
+            if self.transport.ndim != 2:
+                raise ValueError("values: 'transport' requires rotations of the plane; these transports are matrices")
+            return self.transport[:, 0] + 1j * self.transport[:, 1]
+        return getattr(self, values)
+
+    def padded(self, k: Optional[int] = None, dtype: DTypeLike = np.float32) -> PaddedMaps:
         """Arrays of equal length for every source, for example for torch: `torch.from_numpy(p.log)`.
 
         k : number of entries per source, the nearest ones; None: the largest number of entries of any source.
@@ -129,12 +135,17 @@ class LocalMaps:
         """Number of sources."""
         return len(self.sources)
 
+    def __reduce__(self) -> tuple:
+        return reduced(LocalMaps, self.sources, self.columns, self.indptr, self.indices, self.log, self.distance, self.weight,
+                       self.transport)
+
     def __repr__(self) -> str:
         return f"<ahm.LocalMaps: {len(self)} sources, {len(self.indices)} entries>"
 
 
-def local_maps(surface: Any, radius: Optional[float] = None, k: Optional[int] = None, *, sources: Any = None, u_axis: Any = None, margin: float = 2.0,
-               t_coef: float = 1.0, variant: str = "adaptive", threads: int = 0, progress: Progress = None) -> LocalMaps:
+def local_maps(surface: SurfaceLike, radius: Optional[float] = None, k: Optional[int] = None, *,
+               sources: Optional[Sources] = None, u_axis: Optional[Vector] = None, margin: float = 2.0, t_coef: float = 1.0,
+               variant: str = "adaptive", threads: int = 0, progress: Progress = None) -> LocalMaps:
     """Log maps within a radius, or of the k nearest rows, around every row or around `sources`.
 
     Time and memory depend only on the size of these neighborhoods.
@@ -188,8 +199,8 @@ class LocalStroke(NamedTuple):
     length: float  #: length of the curve, world units
 
 
-def local_stroke(surface: Any, points: Any, radius: float, *, closed: bool = False, shape: str = "line", margin: float = 2.0,
-                 t_coef: float = 1.0, variant: str = "adaptive", progress: Progress = None) -> LocalStroke:
+def local_stroke(surface: SurfaceLike, points: Sources, radius: float, *, closed: bool = False, shape: str = "line",
+                 margin: float = 2.0, t_coef: float = 1.0, variant: str = "adaptive", progress: Progress = None) -> LocalStroke:
     """Coordinates along a curve, for the rows within a radius only.
 
     Time and memory depend only on the size of this neighborhood. Distances are measured from the nearest sample of the curve;

@@ -11,7 +11,9 @@ from . import _arguments as arguments
 from . import _core
 from . import _places as places
 from ._options import checked
+from ._pickles import reduced
 from ._surfaces import Surface
+from .typing import Sources, Matrix
 
 
 class Status(enum.IntEnum):
@@ -164,7 +166,7 @@ class LogMap:
         """The method by which the map was computed: "polar", "heat" or "exact"."""
         return self._map.method
 
-    def sample(self, points: Any) -> np.ndarray:
+    def sample(self, points: Sources) -> np.ndarray:
         """The coordinates (u, v) at k points of the surface, as an array (k, 2); NaN where the map is not ok.
 
         points : rows, positions (k, 3), `(faces, barycentric)`, `(edges, t)`. On a cloud, points that are not rows require a map
@@ -179,7 +181,7 @@ class LogMap:
         """
         return self._map.sample(places.points(points, "points", self._surface, empty=True))[0]
 
-    def inverse(self, uv: Any) -> InversePoints:
+    def inverse(self, uv: Matrix) -> InversePoints:
         """The points of the surface at coordinates `uv` (k, 2), world units. `InverseMap` does the same with options.
 
         >>> import ahm
@@ -198,7 +200,7 @@ class LogMap:
         return len(self._surface)
 
     def __reduce__(self) -> tuple:
-        return _again, (self._recipe, self._number)
+        return reduced(_again, self._recipe, self._number)
 
     def __copy__(self) -> LogMap:
         return self
@@ -249,12 +251,12 @@ class InverseMap:
         """(t, 3) int32 rows of the triangles in use, nearest to the source first."""
         return self._core.triangles()
 
-    def __call__(self, uv: Any) -> InversePoints:
+    def __call__(self, uv: Matrix) -> InversePoints:
         """The points of the surface at coordinates `uv` (k, 2), world units."""
         return InversePoints(*self._core.at(arguments.floats(uv, "uv", (None, 2))))
 
     def __reduce__(self) -> tuple:
-        return _inverse_again, (self.map, self._options)
+        return reduced(_inverse_again, self.map, self._options)
 
     def __repr__(self) -> str:
         return f"<ahm.InverseMap: {len(self.triangles)} triangles>"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, List, NamedTuple
+from typing import Any, List, NamedTuple, Union
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from . import _core
 from ._options import checked
 from ._progress import Progress, reporting
 from ._surfaces import Surface
+from .typing import Matrix, Faces
 
 
 class TriangleMesh(Surface):
@@ -33,7 +34,7 @@ class TriangleMesh(Surface):
     <ahm.TriangleMesh: 642 vertices, 1280 faces>
     """
 
-    def __init__(self, vertices: Any, faces: Any, *, delaunay: bool = True, clamp_weights: bool = True,
+    def __init__(self, vertices: Matrix, faces: Faces, *, delaunay: bool = True, clamp_weights: bool = True,
                  non_manifold: str = "error", threads: int = 0, progress: Progress = None) -> None:
         points = arguments.floats(vertices, "vertices", (None, 3))
         triangles = arguments.integers(faces, "faces", 2)
@@ -85,7 +86,7 @@ class PolygonMesh(Surface):
     <ahm.PolygonMesh: 8 vertices, 6 faces>
     """
 
-    def __init__(self, vertices: Any, faces: Any, *, discretization: str = "automatic", delaunay: bool = True,
+    def __init__(self, vertices: Matrix, faces: Faces, *, discretization: str = "automatic", delaunay: bool = True,
                  clamp_weights: bool = True, non_manifold: str = "error", threads: int = 0,
                  progress: Progress = None) -> None:
         points = arguments.floats(vertices, "vertices", (None, 3))
@@ -129,7 +130,7 @@ class Compressed(NamedTuple):
     corners: np.ndarray
 
 
-def as_faces(begin: np.ndarray, corners: np.ndarray) -> Any:
+def as_faces(begin: np.ndarray, corners: np.ndarray) -> Union[np.ndarray, List[np.ndarray]]:
     """Faces as an (m, c) array if all have c corners, otherwise as a list of arrays; views."""
     counts = np.diff(begin)
     if len(counts) and (counts == counts[0]).all():

@@ -28,6 +28,7 @@ class Places:
         return self.where(len(self.kinds))
 
     def add(self, value: Any) -> None:
+        value = _unwrapped(value)
         if is_row(value):
             self._add(ROW, self._row(value), ())
         elif _is_face_point(value):
@@ -40,10 +41,13 @@ class Places:
                             f"got {arguments.describe(value)}")
         else:
             given = arguments.array(value, self.here())
-            if self.name == "source" and given.dtype.kind in "iu" and given.shape != (self.surface._position_width,):
-                raise ValueError(f"source: expected one row or one position, got shape {given.shape}; use log_maps for several")
+            width = self.surface._position_width
+            if self.single and given.dtype.kind in "iu":
+                several = "; use log_maps for several rows" if self.name == "source" else ""
+                raise ValueError(f"{self.name}: expected one row, or a position of {width} floats; got integers of shape "
+                                 f"{given.shape}{several}")
             if given.ndim != 1:
-                raise ValueError(f"{self.here()}: expected a position of {self.surface._position_width} numbers, got shape {given.shape}")
+                raise ValueError(f"{self.here()}: expected a position of {width} numbers, got shape {given.shape}")
             self._add(POSITION, -1, positions(given[None], self.where, len(self.kinds), self.surface)[0])
 
     def packed(self) -> tuple:
@@ -87,7 +91,9 @@ class Places:
 
 
 def point(value: Any, name: str, surface: Any) -> tuple:
-    """Packs one point: a row, a position, `(face, barycentric)`, or `((row, row), t)` on an edge."""
+    """Packs one point: a row, a position of floats, `(face, barycentric)`, or `((row, row), t)` on an edge.
+
+    A list or array of integers is refused, because it looks like several rows."""
     result = Places(name, True, surface)
     result.add(value)
     return result.packed()
@@ -100,6 +106,7 @@ def points(value: Any, name: str, surface: Any, empty: bool = False) -> tuple:
 
     empty : whether there may be no points.
     """
+    value = _unwrapped(value)
     if is_row(value) or _is_face_point(value) or _is_edge_point(value, surface):
         return point(value, name, surface)
     if isinstance(value, (str, bytes)) or not hasattr(value, "__len__"):
@@ -166,7 +173,7 @@ def _of_positions(values: np.ndarray, name: str) -> tuple:
 
 
 def _in_triangles(value: tuple, name: str, surface: Any) -> Any:
-    """Packs (faces (k,), barycentric (k, 3)) on triangles all at once. Returns None on any fault; points are then checked one by one."""
+    """Packs (faces (k,), barycentric (k, 3)) on triangles all at once. None on any fault; points are then checked one by one."""
     try:
         faces, weights = np.asarray(value[0]), np.asarray(value[1])
     except ValueError:
@@ -205,6 +212,10 @@ def _columns(value: Any) -> Any:
     of_faces = first == 1 and len(value[0]) > 0 and is_row(value[0][0]) and len(value[1]) > 0 and np.ndim(value[1][0]) == 1
     of_edges = first == 2 and np.shape(value[0])[1] == 2 and np.ndim(value[1]) == 1
     return list(zip(*value)) if of_faces or of_edges else None
+
+
+def _unwrapped(value: Any) -> Any:
+    return tuple(arguments.unwrapped(part) for part in value) if type(value) is tuple else value
 
 
 def is_row(value: Any) -> bool:

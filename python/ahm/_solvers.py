@@ -13,8 +13,10 @@ from . import _places as places
 from ._inputs import surface as as_surface
 from ._maps import LogMap
 from ._options import checked
+from ._pickles import reduced
 from ._progress import Progress, reporting
 from ._surfaces import Surface
+from .typing import Source, Sources, SurfaceLike, Vector
 
 
 class _Maker:
@@ -71,7 +73,7 @@ class _Recipe:
             return self.made.pop(number)
 
     def __reduce__(self) -> tuple:
-        return _Recipe, (self.maker, self.at, self.axis, self.options)
+        return reduced(_Recipe, self.maker, self.at, self.axis, self.options)
 
 
 class LogMapSolver(_Maker):
@@ -102,10 +104,10 @@ class LogMapSolver(_Maker):
 
     method = "heat"
 
-    def __init__(self, surface: Any, *, t_coef: float = 1.0, variant: str = "adaptive",
+    def __init__(self, surface: SurfaceLike, *, t_coef: float = 1.0, variant: str = "adaptive",
                  strategy: str = "automatic", expected_maps: int = 0, memory: int = 0, accuracy: float = 1e-9,
                  ordering: str = "amd", threads: int = 0, progress: Progress = None) -> None:
-        self.surface = as_surface(surface)
+        self.surface = as_body(surface)
         self.options = checked(t_coef=t_coef, variant=variant, strategy=strategy, expected_maps=expected_maps,
                                memory=memory, accuracy=accuracy, ordering=ordering, threads=threads)
         with reporting(progress) as report:
@@ -121,7 +123,7 @@ class LogMapSolver(_Maker):
         """The strategy in use: "global" or "march"."""
         return self._core.strategy
 
-    def log_map(self, source: Any, *, u_axis: Any = None, radius: Optional[float] = None, frames: bool = True,
+    def log_map(self, source: Source, *, u_axis: Optional[Vector] = None, radius: Optional[float] = None, frames: bool = True,
                 variant: Optional[str] = None, threads: Optional[int] = None, progress: Progress = None) -> LogMap:
         """The log map of one source.
 
@@ -143,7 +145,7 @@ class LogMapSolver(_Maker):
         at = places.point(source, "source", self.surface)
         return self._solve(at, u_axis, progress, radius=radius, frames=frames, variant=variant, threads=threads)[0]
 
-    def log_maps(self, sources: Any, *, u_axis: Any = None, radius: Optional[float] = None, frames: bool = False,
+    def log_maps(self, sources: Sources, *, u_axis: Optional[Vector] = None, radius: Optional[float] = None, frames: bool = False,
                  spread: bool = True, distances: bool = True, variant: Optional[str] = None, threads: Optional[int] = None,
                  progress: Progress = None) -> List[LogMap]:
         """One map per source, solved in blocks. Faster than one by one; the results agree up to rounding.
@@ -168,7 +170,7 @@ class LogMapSolver(_Maker):
         return self._core.maps(at, axis, options, report)
 
     def __reduce__(self) -> tuple:
-        return _solver_again, (self.surface, self.options)
+        return reduced(_solver_again, self.surface, self.options)
 
     def __repr__(self) -> str:
         return f"<ahm.LogMapSolver: {self.strategy}, on {self.surface!r}>"
@@ -203,8 +205,9 @@ class PolarMapSolver(_Maker):
 
     method = "polar"
 
-    def __init__(self, surface: Any, *, windows: Optional[int] = None, threads: int = 0, progress: Progress = None) -> None:
-        self.surface = as_surface(surface)
+    def __init__(self, surface: SurfaceLike, *, windows: Optional[int] = None, threads: int = 0,
+                 progress: Progress = None) -> None:
+        self.surface = as_body(surface)
         self.options = checked(windows=windows, threads=threads)
         with reporting(progress) as report:
             self._core = _core.PolarSolver(self.surface._body, self.options.get("windows"), self.options["threads"], report)
@@ -213,7 +216,7 @@ class PolarMapSolver(_Maker):
     def _maker(self) -> Any:
         return self._core
 
-    def log_map(self, source: Any, *, u_axis: Any = None, radius: Optional[float] = None, frames: bool = True,
+    def log_map(self, source: Source, *, u_axis: Optional[Vector] = None, radius: Optional[float] = None, frames: bool = True,
                 progress: Progress = None) -> LogMap:
         """The polar map of one source. Arguments and errors as in `LogMapSolver.log_map`.
 
@@ -225,7 +228,7 @@ class PolarMapSolver(_Maker):
         at = places.point(source, "source", self.surface)
         return self._solve(at, u_axis, progress, radius=radius, frames=frames)[0]
 
-    def log_maps(self, sources: Any, *, u_axis: Any = None, radius: Optional[float] = None, frames: bool = False,
+    def log_maps(self, sources: Sources, *, u_axis: Optional[Vector] = None, radius: Optional[float] = None, frames: bool = False,
                  threads: Optional[int] = None, progress: Progress = None) -> List[LogMap]:
         """One map per source, several at a time, with the same results as `log_map`.
 
@@ -242,7 +245,7 @@ class PolarMapSolver(_Maker):
         return self._core.maps(at, axis, options, report)
 
     def __reduce__(self) -> tuple:
-        return _polar_again, (self.surface, self.options)
+        return reduced(_polar_again, self.surface, self.options)
 
     def __repr__(self) -> str:
         return f"<ahm.PolarMapSolver: on {self.surface!r}>"
@@ -253,7 +256,7 @@ def _polar_again(on: Surface, options: Dict[str, Any]) -> PolarMapSolver:
 
 
 class ExactGeodesics(_Maker):
-    """Log maps by shortest paths over the flat triangles of a mesh, exact up to rounding. Prepares the triangles once for many maps.
+    """Log maps by shortest paths over the flat triangles of a mesh, exact up to rounding. Prepares the triangles once.
 
     `stroke`, `cells`, `karcher_mean`, `geometric_median` and `atlas` accept it in place of a `LogMapSolver`. Immutable; threads
     can share it.
@@ -276,15 +279,15 @@ class ExactGeodesics(_Maker):
 
     method = "exact"
 
-    def __init__(self, surface: Any, *, tolerance: float = 0.0, progress: Progress = None) -> None:
+    def __init__(self, surface: SurfaceLike, *, tolerance: float = 0.0, progress: Progress = None) -> None:
         self.surface = as_body(surface)
         self.tolerance = float(checked(tolerance=tolerance)["tolerance"])
         self._core = self.surface._body
         with reporting(progress) as report:
             self._core.lay_out(report)
 
-    def log_map(self, source: Any, *, u_axis: Any = None, radius: Optional[float] = None, tolerance: Optional[float] = None,
-                frames: bool = True, progress: Progress = None) -> LogMap:
+    def log_map(self, source: Source, *, u_axis: Optional[Vector] = None, radius: Optional[float] = None,
+                tolerance: Optional[float] = None, frames: bool = True, progress: Progress = None) -> LogMap:
         """The exact log map of one source. Arguments and errors as in `LogMapSolver.log_map`. A small radius saves time.
 
         tolerance : tolerance of this map; None: that of the constructor.
@@ -298,8 +301,9 @@ class ExactGeodesics(_Maker):
         within = self.tolerance if tolerance is None else tolerance
         return self._solve(at, u_axis, progress, radius=radius, tolerance=within, frames=frames)[0]
 
-    def log_maps(self, sources: Any, *, u_axis: Any = None, radius: Optional[float] = None,
-                 tolerance: Optional[float] = None, frames: bool = False, threads: int = 0, progress: Progress = None) -> List[LogMap]:
+    def log_maps(self, sources: Sources, *, u_axis: Optional[Vector] = None, radius: Optional[float] = None,
+                 tolerance: Optional[float] = None, frames: bool = False, threads: int = 0,
+                 progress: Progress = None) -> List[LogMap]:
         """One map per source, several at a time, with the same results as `log_map`.
 
         Arguments and errors as in `log_map` and `LogMapSolver.log_maps`.
@@ -320,7 +324,7 @@ class ExactGeodesics(_Maker):
         return self._core, self.tolerance
 
     def __reduce__(self) -> tuple:
-        return _geodesics_again, (self.surface, self.tolerance)
+        return reduced(_geodesics_again, self.surface, self.tolerance)
 
     def __repr__(self) -> str:
         return f"<ahm.ExactGeodesics: on {self.surface!r}>"
@@ -333,8 +337,9 @@ def _geodesics_again(on: Surface, tolerance: float) -> ExactGeodesics:
 Maker = Union[LogMapSolver, PolarMapSolver, ExactGeodesics]
 
 
-def log_map(surface: Any, source: Any, *, method: str = "auto", u_axis: Any = None, radius: Optional[float] = None,
-            tolerance: Optional[float] = None, frames: bool = True, progress: Progress = None, **options: Any) -> LogMap:
+def log_map(surface: SurfaceLike, source: Source, *, method: str = "auto", u_axis: Optional[Vector] = None,
+            radius: Optional[float] = None, tolerance: Optional[float] = None, frames: bool = True, progress: Progress = None,
+            **options: object) -> LogMap:
     """The log map of one source: direction and distance of every row. For many sources on one surface use a `SurfaceSolver`.
 
     surface : a `Surface`, a solver, or what `ahm.surface` takes.
@@ -387,7 +392,8 @@ def as_maker(thing: Any, method: Optional[str] = None, options: Optional[Dict[st
     by = made if ready else method or "heat"
     unknown = sorted(set(given) - {"expected_maps", "progress", "threads"}) if ready or by != "heat" else []
     if unknown:
-        raise TypeError(f"{unknown[0]}: " + ("options of an existing solver cannot be changed" if ready else f"method {by!r} has no such option"))
+        problem = "options of an existing solver cannot be changed" if ready else f"method {by!r} has no such option"
+        raise TypeError(f"{unknown[0]}: {problem}")
     within = tolerance_of(thing, by or "heat", tolerance)
     if ready and tolerance is None:
         return thing

@@ -12,9 +12,11 @@ from ._geodesics import trace as _trace
 from ._local_maps import LocalMaps
 from ._local_maps import local_maps as _local_maps
 from ._maps import LogMap
+from ._pickles import reduced
 from ._progress import Progress
-from ._solvers import chosen_maker, _Maker
+from ._solvers import chosen_maker
 from ._surfaces import Surface
+from .typing import Source, Sources, SurfaceLike, Vector
 
 
 class SurfaceSolver:
@@ -37,7 +39,8 @@ class SurfaceSolver:
     Raises ValueError naming the option; NotPositiveDefinite, ResourceExhausted.
     """
 
-    def __init__(self, surface: Any, method: str = "auto", *, tolerance: Optional[float] = None, **options: Any) -> None:
+    def __init__(self, surface: SurfaceLike, method: str = "auto", *, tolerance: Optional[float] = None,
+                 **options: object) -> None:
         self._solver: Any = chosen_maker(surface, method, dict(options), tolerance)
 
     @property
@@ -50,7 +53,7 @@ class SurfaceSolver:
         """The method in use: "polar", "heat" or "exact"."""
         return self._solver.method
 
-    def log_map(self, source: Any, *, u_axis: Any = None, radius: Optional[float] = None, frames: bool = True,
+    def log_map(self, source: Source, *, u_axis: Optional[Vector] = None, radius: Optional[float] = None, frames: bool = True,
                 progress: Progress = None) -> LogMap:
         """The log map of one source. Arguments and errors as in `LogMapSolver.log_map`.
 
@@ -61,7 +64,7 @@ class SurfaceSolver:
         """
         return self._solver.log_map(source, u_axis=u_axis, radius=radius, frames=frames, progress=progress)
 
-    def log_maps(self, sources: Any, *, u_axis: Any = None, radius: Optional[float] = None, frames: bool = True,
+    def log_maps(self, sources: Sources, *, u_axis: Optional[Vector] = None, radius: Optional[float] = None, frames: bool = True,
                  progress: Progress = None) -> List[LogMap]:
         """One map per source, computed on several threads. Arguments and errors as in `LogMapSolver.log_maps`.
 
@@ -71,7 +74,7 @@ class SurfaceSolver:
         """
         return self._solver.log_maps(sources, u_axis=u_axis, radius=radius, frames=frames, progress=progress)
 
-    def distance(self, sources: Any, *, radius: Optional[float] = None, progress: Progress = None) -> np.ndarray:
+    def distance(self, sources: Sources, *, radius: Optional[float] = None, progress: Progress = None) -> np.ndarray:
         """(n,) geodesic distance of every row from the nearest source, world units. NaN where no source is connected.
 
         Computed by a wavefront, or exactly if the method is "exact". Arguments and errors as in `ahm.distance`.
@@ -81,10 +84,11 @@ class SurfaceSolver:
         [0.0, 1.0, 1.0, 0.0]
         """
         if self.method == "exact":
-            return _distance(self.surface, sources, method="exact", radius=radius, tolerance=self._solver.tolerance, progress=progress)
+            return _distance(self.surface, sources, method="exact", radius=radius, tolerance=self._solver.tolerance,
+                             progress=progress)
         return _distance(self.surface, sources, radius=radius, progress=progress)
 
-    def path(self, start: Any, end: Any, *, progress: Progress = None) -> Optional[Path]:
+    def path(self, start: Source, end: Source, *, progress: Progress = None) -> Optional[Path]:
         """The shortest path between two points: exact over flat faces, on clouds over tangent planes. None if not connected.
 
         start, end : a row, a position, `(face, barycentric)`, or `((row, row), t)`.
@@ -98,7 +102,7 @@ class SurfaceSolver:
         """
         return geodesic_path(self.surface, start, end, progress=progress)
 
-    def trace(self, start: Any, direction: Any, length: Optional[float] = None, *, progress: Progress = None) -> Path:
+    def trace(self, start: Source, direction: Vector, length: Optional[float] = None, *, progress: Progress = None) -> Path:
         """The straightest geodesic from a point: the exponential map. Arguments and errors as in `ahm.trace`.
 
         >>> import ahm
@@ -108,8 +112,8 @@ class SurfaceSolver:
         """
         return _trace(self.surface, start, direction, length, progress=progress)
 
-    def local_maps(self, radius: Optional[float] = None, k: Optional[int] = None, *, sources: Any = None, u_axis: Any = None,
-                   margin: float = 2.0, progress: Progress = None) -> LocalMaps:
+    def local_maps(self, radius: Optional[float] = None, k: Optional[int] = None, *, sources: Optional[Sources] = None,
+                   u_axis: Optional[Vector] = None, margin: float = 2.0, progress: Progress = None) -> LocalMaps:
         """Log maps within a radius around every row, or around `sources`. Arguments and errors as in `ahm.local_maps`.
 
         >>> import ahm
@@ -119,11 +123,7 @@ class SurfaceSolver:
         return _local_maps(self.surface, radius, k, sources=sources, u_axis=u_axis, margin=margin, progress=progress)
 
     def __reduce__(self) -> tuple:
-        return _again, (self._solver,)
+        return reduced(SurfaceSolver, self._solver)
 
     def __repr__(self) -> str:
         return f"<ahm.SurfaceSolver: {self.method}, on {self.surface!r}>"
-
-
-def _again(solver: _Maker) -> SurfaceSolver:
-    return SurfaceSolver(solver)

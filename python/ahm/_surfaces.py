@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any, Dict, List, NamedTuple, Optional
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Union
 
 import numpy as np
 
 from . import _arguments as arguments
 from . import _core
+from ._pickles import reduced
+from .typing import Matrix, SurfaceWarning
 
 
 class ClosestPoints(NamedTuple):
@@ -83,12 +85,12 @@ class Surface:
         return np.where((vertex >= 0)[:, None, None], frames[vertex, 1:], np.nan)
 
     @property
-    def report(self) -> Dict[str, Any]:
+    def report(self) -> Mapping[str, Union[bool, int, float, str]]:
         """Statistics of the construction of the graph, by name."""
         return self._body.report()
 
     @property
-    def warnings(self) -> List[Dict[str, Any]]:
+    def warnings(self) -> List[SurfaceWarning]:
         """Problems of the input: dictionaries with a sentence `text`, and `id`, `numbers`, `rows` and `name`.
 
         The C++ header of each surface lists the ids."""
@@ -106,7 +108,7 @@ class Surface:
         body = self._body
         return TangentGraph(*body.csr(), body.frames(), body.length_unit, body.vertex_of_row(), body.row_of_vertex())
 
-    def closest_points(self, positions: Any) -> ClosestPoints:
+    def closest_points(self, positions: Matrix) -> ClosestPoints:
         """The nearest point of the surface for each of k positions: on the faces of a mesh, or in the tangent planes of a cloud.
 
         On a cloud, the point lies in the tangent plane of the nearest row.
@@ -138,7 +140,7 @@ class Surface:
         raise NotImplementedError
 
     def __reduce__(self) -> tuple:
-        return rebuild, (type(self), self._state(), self._options)
+        return reduced(_again, type(self), self._state(), self._options)
 
     def __copy__(self) -> Surface:
         return self
@@ -153,5 +155,5 @@ class Surface:
         return f"{len(self)} rows"
 
 
-def rebuild(type_: type, state: tuple, options: Dict[str, Any]) -> Surface:
+def _again(type_: type, state: tuple, options: Dict[str, Any]) -> Surface:
     return type_(*state, **options)

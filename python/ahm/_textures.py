@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Dict, NamedTuple, Optional, Union
+from typing import Any, Dict, List, NamedTuple, Optional, Union
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from ._meshes import as_faces
 from ._options import checked
 from ._progress import Progress, reporting
 from ._solvers import as_maker
+from .typing import Sources, SurfaceLike
 
 
 def _inverse(thing: Union[LogMap, InverseMap]) -> InverseMap:
@@ -27,7 +28,7 @@ class Decal(NamedTuple):
     normals: np.ndarray  #: (p, 3) unit normals
     #: Corners of every face, counter-clockwise: triangles of the surface, cut along the borders of the image. An (m, 3) array if
     #: no triangle is cut, otherwise a list of arrays
-    faces: Any
+    faces: Union[np.ndarray, List[np.ndarray]]
     uv: np.ndarray  #: (p, 2) image coordinates in [0, 1]; (0, 0) is the lower left corner of the image
     hidden: int  #: number of triangles left out: under another sheet of the map, or not connected to the rest of the decal
 
@@ -128,7 +129,7 @@ class Atlas(NamedTuple):
     points: np.ndarray  #: (p, 3) positions, world units: the rows of a mesh, or the vertices of a cloud's graph
     #: Corners of every face as numbers of `points`: an (m, c) array if all faces have c corners, otherwise a list of arrays.
     #: Faces are oriented consistently where possible
-    faces: Any
+    faces: Union[np.ndarray, List[np.ndarray]]
     chart: np.ndarray  #: (faces,) int32 number of the chart of every face; -1: no chart
     chart_uv: np.ndarray  #: (corners, 2) coordinates (u, v) in the frame of the chart's source, world units; NaN without a chart
     uv: np.ndarray  #: (corners, 2) texture coordinates in [0, 1], (0, 0) is the lower left corner; NaN without a chart
@@ -141,7 +142,7 @@ class Atlas(NamedTuple):
         return f"<ahm.Atlas: charts: {len(self.sources)}, {len(self.points)} points, {len(self.faces)} faces>"
 
 
-def atlas(solver: Any, sources: Any = None, *, charts: int = 20, max_distortion: Optional[float] = None,
+def atlas(solver: SurfaceLike, sources: Optional[Sources] = None, *, charts: int = 20, max_distortion: Optional[float] = None,
           method: Optional[str] = None, tolerance: Optional[float] = None, size: int = 2048, margin: int = 4,
           progress: Progress = None) -> Atlas:
     """A texture atlas: geodesic Voronoi cells around sources, each flattened by the log map from its source.

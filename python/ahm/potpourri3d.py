@@ -1,8 +1,11 @@
 """The names and signatures of the package potpourri3d: change a script's import to `import ahm.potpourri3d as pp3d`.
 
 The results are computed by this library. Distances in components without a source are NaN, indices out of range raise ValueError,
-and paths are the shortest ones. Features that this library does not have raise NotImplementedError. Tangent vectors have two
+and paths are the shortest ones. Options that this library does not have raise NotImplementedError. Tangent vectors have two
 components in the frames of `get_tangent_frames`; these frames differ from those of potpourri3d.
+
+A point of a curve is a row, `(row, [])`, `(edge, [t])` with edges numbered as in `edges`, or `(face, [a, b, c])`, where `c` may be
+left out.
 
 >>> import ahm
 >>> import ahm.potpourri3d as pp3d
@@ -14,113 +17,31 @@ components in the frames of `get_tangent_frames`; these frames differ from those
 
 from __future__ import annotations
 
-from typing import Any, List, Optional, Tuple
+from typing import TYPE_CHECKING, List, Optional, Sequence, SupportsIndex, Tuple, Union
 
 import numpy as np
 
 from . import _arguments as arguments
 from ._clouds import PointCloud
-from ._fields import DistanceField, distance_and_gradient, extend, operators, transport
-from ._geodesics import geodesic_loop, geodesic_path, geodesic_paths, trace
+from ._curve_distances import Curves, MeshFastMarchingDistanceSolver, MeshSignedHeatSolver, OnSurface, nearer, only_zero_set
+from ._fields import distance_and_gradient, extend, operators, transport
+from ._geodesics import Path, geodesic_path, geodesic_paths, trace
+from ._local_triangles import PointCloudLocalTriangulation
+from ._mesh_arrays import (MeshMarchingTrianglesSolver, checked_mesh, cotan_laplacian, edges, face_areas, marching_triangles,
+                           validate_mesh, validate_points, vertex_areas)
 from ._mesh_files import read_mesh, read_point_cloud, read_polygon_mesh, write_mesh, write_point_cloud
 from ._meshes import PolygonMesh, TriangleMesh
 from ._solvers import LogMapSolver
 from ._surfaces import Surface
+from .typing import Faces, Matrix, Source, Vector
+
+if TYPE_CHECKING:
+    from scipy.sparse import csc_matrix
 
 _STRATEGIES = {"AffineLocal": "localized", "AffineAdaptive": "adaptive"}
 
 
-def _mesh(V: Any, F: Any) -> Tuple[np.ndarray, np.ndarray]:
-    points = arguments.floats(V, "V", (None, 3))
-    faces = arguments.integers(F, "F", 2, 0, len(points) - 1)
-    if faces.shape[1] != 3:
-        raise ValueError(f"F: expected shape (m, 3), got {faces.shape}")
-    return points, faces
-
-
-def face_areas(V: Any, F: Any) -> np.ndarray:
-    """(m,) areas of the triangles.
-
-    >>> import ahm, ahm.potpourri3d as pp3d
-    >>> pp3d.face_areas(*ahm.shapes.plane(2, 2)).tolist()
-    [0.5, 0.5]
-
-    Raises ValueError (wrong shape; a row out of range).
-    """
-    points, faces = _mesh(V, F)
-    a, b, c = (points[faces[:, k]] for k in range(3))
-    return np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
-
-
-def vertex_areas(V: Any, F: Any) -> np.ndarray:
-    """(n,) area of every vertex: a third of the areas of its triangles.
-
-    >>> import ahm, ahm.potpourri3d as pp3d
-    >>> round(float(pp3d.vertex_areas(*ahm.shapes.plane(4, 3)).sum()), 9)
-    6.0
-
-    Raises ValueError (wrong shape; a row out of range).
-    """
-    points, faces = _mesh(V, F)
-    return np.bincount(faces.ravel(), np.repeat(face_areas(points, faces) / 3, 3), len(points))
-
-
-def cotan_laplacian(V: Any, F: Any, denom_eps: float = 0.0) -> Any:
-    """The cotangent Laplacian of the input triangles: (n, n) scipy CSR, positive semi-definite.
-
-    The weight of an edge is half of the sum of the cotangents of the opposite angles. `denom_eps` is added to the denominators of
-    the cotangents.
-
-    >>> import ahm, ahm.potpourri3d as pp3d
-    >>> V, F = ahm.shapes.plane(4, 3)
-    >>> bool(abs((pp3d.cotan_laplacian(V, F) @ V)[5]).max() < 1e-12)           # linear functions are harmonic inside
-    True
-
-    Raises ValueError (wrong shape; a row out of range); ImportError without scipy.
-    """
-    from scipy.sparse import coo_matrix, diags
-
-    points, faces = _mesh(V, F)
-    rows, columns, weights = [], [], []
-    for k in range(3):
-        apex, i, j = (faces[:, (k + s) % 3] for s in range(3))
-        a, b = points[i] - points[apex], points[j] - points[apex]
-        weights.append(0.5 * np.einsum("ij,ij->i", a, b) / (np.linalg.norm(np.cross(a, b), axis=1) + denom_eps))
-        rows.append(i)
-        columns.append(j)
-    n, w = len(points), np.concatenate(weights)
-    W = coo_matrix((w, (np.concatenate(rows), np.concatenate(columns))), (n, n))
-    W = (W + W.T).tocsr()
-    return (diags(np.asarray(W.sum(axis=1)).ravel()) - W).tocsr()
-
-
-def edges(V: Any, F: Any) -> np.ndarray:
-    """(e, 2) vertices of every edge, the smaller number first, sorted.
-
-    >>> import ahm, ahm.potpourri3d as pp3d
-    >>> pp3d.edges(*ahm.shapes.plane(2, 2)).tolist()
-    [[0, 1], [0, 2], [0, 3], [1, 3], [2, 3]]
-
-    Raises ValueError (wrong shape; a row out of range).
-    """
-    faces = _mesh(V, F)[1]
-    return np.unique(np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1), axis=0)
-
-
-class _On:
-    surface: Surface
-
-    def _row(self, value: Any, name: str) -> int:
-        return arguments.row(value, name, len(self.surface))
-
-    def _rows(self, values: Any, name: str) -> np.ndarray:
-        return arguments.rows(values, name, len(self.surface))
-
-    def __repr__(self) -> str:
-        return f"<{__name__}.{type(self).__name__}: on {self.surface!r}>"
-
-
-class _Heat(_On):
+class _Heat(OnSurface):
     """Methods of all solvers that use the heat method."""
 
     _one, _many = "v_ind", "v_inds"  # names of the parameters, for messages
@@ -129,18 +50,17 @@ class _Heat(_On):
         self.surface = surface
         self.solver = LogMapSolver(surface, t_coef=t_coef)
 
-    def _distance(self, sources: Any) -> np.ndarray:
-        field: DistanceField = distance_and_gradient(self.solver, self._rows(sources, self._many))
-        return field.distance
+    def _distance(self, sources: Vector) -> np.ndarray:
+        return distance_and_gradient(self.solver, self._rows(sources, self._many)).distance
 
-    def _distance_from_one(self, source: Any) -> np.ndarray:
+    def _distance_from_one(self, source: SupportsIndex) -> np.ndarray:
         return self._distance([self._row(source, self._one)])
 
-    def compute_distances(self, v_inds: Any) -> np.ndarray:
+    def compute_distances(self, v_inds: Vector) -> np.ndarray:
         """(k, n) distances from each of k vertices separately."""
         return np.array([self._distance([v]) for v in self._rows(v_inds, self._many)])
 
-    def extend_scalar(self, v_inds: Any, values: Any) -> np.ndarray:
+    def extend_scalar(self, v_inds: Vector, values: Vector) -> np.ndarray:
         """(n,) values extended to all vertices: each gets the value of the nearest one of v_inds, blended at ties."""
         return extend(self.solver, self._rows(v_inds, self._many), values)
 
@@ -150,32 +70,53 @@ class _Heat(_On):
         assert frames is not None
         return frames[:, 0], frames[:, 1], frames[:, 2]
 
-    def transport_tangent_vector(self, v_ind: int, vector: Any) -> np.ndarray:
+    def transport_tangent_vector(self, v_ind: SupportsIndex, vector: Vector) -> np.ndarray:
         """(n, 2) the vector at v_ind, parallel transported to every vertex, in the frames of `get_tangent_frames`."""
-        return self.transport_tangent_vectors([self._row(v_ind, self._one)], [vector])
+        return self.transport_tangent_vectors([self._row(v_ind, self._one)], np.asarray(vector)[None])
 
-    def transport_tangent_vectors(self, v_inds: Any, vectors: Any) -> np.ndarray:
+    def transport_tangent_vectors(self, v_inds: Vector, vectors: Matrix) -> np.ndarray:
         """(n, 2) vectors at v_inds, parallel transported: each vertex gets that of the nearest one, blended at ties."""
         given = arguments.floats(vectors, "vectors", (None, 2), finite=True)
         return transport(self.solver, self._rows(v_inds, self._many), given)
 
-    def compute_log_map(self, v_ind: int, strategy: str = "AffineLocal") -> np.ndarray:
-        """(n, 2) log map from v_ind, in its frame. strategy: "AffineLocal" (Alg. 1 of [SS25]) or "AffineAdaptive" (Alg. 2)."""
+    def compute_log_map(self, v_ind: SupportsIndex, strategy: str = "AffineLocal") -> np.ndarray:
+        """(n, 2) log map from v_ind, in its frame.
+
+        strategy: "AffineLocal" (Alg. 1 of [SS25]), "AffineAdaptive" (Alg. 2), or "VectorHeat": the distance in the direction of
+        its gradient, relative to the transported axis ([SSC19] Sec. 5).
+        """
         return self.compute_log_maps([self._row(v_ind, self._one)], strategy)[0]
 
-    def compute_log_maps(self, v_inds: Any, strategy: str = "AffineLocal") -> List[np.ndarray]:
+    def compute_log_maps(self, v_inds: Vector, strategy: str = "AffineLocal") -> List[np.ndarray]:
         """One log map per source, solved in blocks."""
-        if strategy not in _STRATEGIES:
-            raise NotImplementedError(f"strategy: {strategy!r} is not supported; use 'AffineLocal' or 'AffineAdaptive'")
+        arguments.choice(strategy, "strategy", ("VectorHeat", *_STRATEGIES))
         rows = self._rows(v_inds, self._many)
+        if strategy == "VectorHeat":
+            return [self._vector_heat_map(int(row)) for row in rows]
         return [m.uv for m in self.solver.log_maps(rows, variant=_STRATEGIES[strategy], distances=False)]
 
-    def compute_signed_distance(self, *given: Any, **options: Any) -> np.ndarray:
-        raise NotImplementedError("compute_signed_distance: not supported; use `ahm.stroke` for signed distances from a curve")
+    def _vector_heat_map(self, row: int) -> np.ndarray:
+        field = distance_and_gradient(self.solver, row)
+        x, y, _ = self.get_tangent_frames()
+        away = np.einsum("ij,ij->i", field.gradient, x) + 1j * np.einsum("ij,ij->i", field.gradient, y)
+        axis = transport(self.solver, row, [1.0, 0.0])
+        turn = away * (axis[:, 0] - 1j * axis[:, 1])
+        result = field.distance * np.divide(turn, abs(turn), out=np.zeros_like(turn), where=turn != 0)
+        return np.stack([result.real, result.imag], axis=1)
+
+
+def _without_faults(V: Matrix, F: Faces) -> np.ndarray:
+    """The faces of a mesh without those that repeat a corner or another face."""
+    faces = checked_mesh(V, F)[1]
+    corners = np.sort(faces, axis=1)
+    first = np.sort(np.unique(corners, axis=0, return_index=True)[1])
+    return faces[first[(np.diff(corners[first], axis=1) > 0).all(axis=1)]]
 
 
 class MeshHeatMethodDistanceSolver(_Heat):
     """Geodesic distance on a triangle mesh by the heat method (`ahm.distance_and_gradient`).
+
+    Faces that repeat a corner or another face are left out. The mesh is cut open at nonmanifold edges and vertices.
 
     use_robust : use the intrinsic Delaunay triangulation.
 
@@ -184,22 +125,22 @@ class MeshHeatMethodDistanceSolver(_Heat):
     >>> solver.compute_distance(0)[:4].round(9).tolist()
     [0.0, 1.0, 2.0, 3.0]
 
-    Raises ValueError (an invalid mesh, as `ahm.TriangleMesh`; a row out of range, naming the parameter; t_coef).
+    Raises ValueError (a coordinate that is not finite; a row out of range, naming the parameter; t_coef).
     """
 
-    def __init__(self, V: Any, F: Any, t_coef: float = 1.0, use_robust: bool = True) -> None:
-        super().__init__(TriangleMesh(V, F, delaunay=bool(use_robust)), t_coef)
+    def __init__(self, V: Matrix, F: Faces, t_coef: float = 1.0, use_robust: bool = True) -> None:
+        super().__init__(TriangleMesh(V, _without_faults(V, F), delaunay=bool(use_robust), non_manifold="split"), t_coef)
 
-    def compute_distance(self, v_ind: int) -> np.ndarray:
+    def compute_distance(self, v_ind: SupportsIndex) -> np.ndarray:
         """(n,) distances from a vertex."""
         return self._distance_from_one(v_ind)
 
-    def compute_distance_multisource(self, v_inds: Any) -> np.ndarray:
+    def compute_distance_multisource(self, v_inds: Vector) -> np.ndarray:
         """(n,) distances from the nearest of several vertices."""
         return self._distance(v_inds)
 
 
-def compute_distance(V: Any, F: Any, v_ind: int) -> np.ndarray:
+def compute_distance(V: Matrix, F: Faces, v_ind: SupportsIndex) -> np.ndarray:
     """(n,) distances from a vertex of a triangle mesh.
 
     >>> import ahm, ahm.potpourri3d as pp3d
@@ -211,7 +152,7 @@ def compute_distance(V: Any, F: Any, v_ind: int) -> np.ndarray:
     return MeshHeatMethodDistanceSolver(V, F).compute_distance(v_ind)
 
 
-def compute_distance_multisource(V: Any, F: Any, v_inds: Any) -> np.ndarray:
+def compute_distance_multisource(V: Matrix, F: Faces, v_inds: Vector) -> np.ndarray:
     """(n,) distances from the nearest of several vertices of a triangle mesh.
 
     >>> import ahm, ahm.potpourri3d as pp3d
@@ -233,23 +174,23 @@ class MeshVectorHeatSolver(_Heat):
     >>> (uv[11, 0] * x[0] + uv[11, 1] * y[0]).round(9).tolist()          # in space: from row 0 to row 11
     [3.0, 2.0, 0.0]
 
-    Raises ValueError (an invalid mesh, as `ahm.TriangleMesh`; a row out of range, naming the parameter; t_coef),
-    NotImplementedError (a strategy that `compute_log_map` does not list).
+    Raises ValueError (an invalid mesh, as `ahm.TriangleMesh`; a row out of range, naming the parameter; t_coef; a strategy).
     """
 
-    def __init__(self, V: Any, F: Any, t_coef: float = 1.0, use_intrinsic_delaunay: bool = True, *,
+    def __init__(self, V: Matrix, F: Faces, t_coef: float = 1.0, use_intrinsic_delaunay: bool = True, *,
                  useIntrinsicDelaunay: Optional[bool] = None) -> None:
         delaunay = use_intrinsic_delaunay if useIntrinsicDelaunay is None else useIntrinsicDelaunay
         super().__init__(TriangleMesh(V, F, delaunay=bool(delaunay)), t_coef)
 
-    def get_connection_laplacian(self) -> Any:
-        """The connection Laplacian in the frames of `get_tangent_frames`: (n, n) scipy CSR, complex Hermitian."""
+    def get_connection_laplacian(self) -> csc_matrix:
+        """The connection Laplacian in the frames of `get_tangent_frames`: (n, n) scipy CSC, complex Hermitian."""
         found = operators(self.surface)
         if not np.array_equal(found.vertex_of_row, np.arange(len(self.surface))) or found.tau.shape != (len(self.surface),):
-            raise NotImplementedError("get_connection_laplacian: requires a mesh in which every vertex is used by a face and none was split")
+            raise NotImplementedError("get_connection_laplacian: requires a mesh in which every vertex is used by a face; use "
+                                      "ahm.operators")
         if found.connection_laplacian.dtype != complex:
-            raise NotImplementedError("get_connection_laplacian: the surface is not orientable; its connection Laplacian is not complex")
-        return found.connection_laplacian
+            raise NotImplementedError("get_connection_laplacian: the surface is not orientable; use ahm.operators")
+        return found.connection_laplacian.tocsc()
 
 
 class PolygonMeshHeatSolver(_Heat):
@@ -261,15 +202,22 @@ class PolygonMeshHeatSolver(_Heat):
     >>> pp3d.PolygonMeshHeatSolver(V, quads).compute_distance([0])[:4].round(9).tolist()
     [0.0, 1.0, 2.0, 3.0]
 
-    Raises ValueError (an invalid mesh, as `ahm.PolygonMesh`; a row out of range), NotImplementedError (`compute_signed_distance`).
+    Raises ValueError (an invalid mesh, as `ahm.PolygonMesh`; a row out of range), NotImplementedError (options of the level sets
+    other than the defaults).
     """
 
-    def __init__(self, V: Any, F: Any, t_coef: float = 1.0) -> None:
+    def __init__(self, V: Matrix, F: Faces, t_coef: float = 1.0) -> None:
         super().__init__(PolygonMesh(V, F), t_coef)
 
-    def compute_distance(self, v_inds: Any) -> np.ndarray:
+    def compute_distance(self, v_inds: Vector) -> np.ndarray:
         """(n,) distances from the nearest of one or more vertices."""
         return self._distance(v_inds)
+
+    def compute_signed_distance(self, curves: Curves, level_set_constraint: str = "ZeroSet") -> np.ndarray:
+        """(n,) distances from the nearest of several curves, given by their vertices; positive on their left."""
+        only_zero_set(level_set_constraint)
+        given = self._curves(curves)
+        return self._distance_from_curves(self.solver, given, [True] * len(given))
 
 
 class PointCloudHeatSolver(_Heat):
@@ -280,98 +228,117 @@ class PointCloudHeatSolver(_Heat):
     >>> solver.compute_distance(0)[:4].round(9).tolist()
     [0.0, 1.0, 2.0, 3.0]
 
-    Raises ValueError (an invalid cloud, as `ahm.PointCloud`; a row out of range), NotImplementedError
-    (`compute_signed_distance`).
+    Raises ValueError (an invalid cloud, as `ahm.PointCloud`; a row out of range), NotImplementedError (options of the level sets
+    other than the defaults).
     """
 
     _one, _many = "p_ind", "p_inds"
 
-    def __init__(self, P: Any, t_coef: float = 1.0) -> None:
+    def __init__(self, P: Matrix, t_coef: float = 1.0) -> None:
         super().__init__(PointCloud(P), t_coef)
 
-    def compute_distance(self, p_ind: int) -> np.ndarray:
+    def compute_distance(self, p_ind: SupportsIndex) -> np.ndarray:
         """(n,) distances from a point."""
         return self._distance_from_one(p_ind)
 
-    def compute_distance_multisource(self, p_inds: Any) -> np.ndarray:
+    def compute_distance_multisource(self, p_inds: Vector) -> np.ndarray:
         """(n,) distances from the nearest of several points."""
         return self._distance(p_inds)
 
+    def compute_signed_distance(self, curves: Curves, cloud_normals: Matrix, preserve_source_normals: bool = False,
+                                level_set_constraint: str = "ZeroSet", soft_level_set_weight: float = -1) -> np.ndarray:
+        """(n,) distances from the nearest of several curves, given by their points; positive on their left, seen from the side to
+        which `cloud_normals` (n, 3) point."""
+        only_zero_set(level_set_constraint, preserve_source_normals, soft_level_set_weight)
+        normals, ours = arguments.floats(cloud_normals, "cloud_normals", (len(self.surface), 3)), self.surface.normals
+        result = np.full(len(self.surface), np.nan)
+        for curve in self._curves(curves):
+            rows = [int(row) for row in curve]  # type: ignore[arg-type]
+            seen_from_below = np.einsum("ij,ij->", normals[rows], ours[rows]) < 0
+            found = self._distance_from_curves(self.solver, [curve], [True])
+            result = nearer(result, -found if seen_from_below else found)
+        return result
+
     # The methods of meshes, with the parameter names of clouds.
 
-    def extend_scalar(self, p_inds: Any, values: Any) -> np.ndarray:
+    def extend_scalar(self, p_inds: Vector, values: Vector) -> np.ndarray:
         """(n,) values extended to all points: each gets the value of the nearest one of p_inds, blended at ties."""
         return super().extend_scalar(p_inds, values)
 
-    def transport_tangent_vector(self, p_ind: int, vector: Any) -> np.ndarray:
+    def transport_tangent_vector(self, p_ind: SupportsIndex, vector: Vector) -> np.ndarray:
         """(n, 2) the vector at p_ind, parallel transported to every point, in the frames of `get_tangent_frames`."""
         return super().transport_tangent_vector(p_ind, vector)
 
-    def transport_tangent_vectors(self, p_inds: Any, vectors: Any) -> np.ndarray:
+    def transport_tangent_vectors(self, p_inds: Vector, vectors: Matrix) -> np.ndarray:
         """(n, 2) vectors at p_inds, parallel transported: each point gets that of the nearest one, blended at ties."""
         return super().transport_tangent_vectors(p_inds, vectors)
 
-    def compute_log_map(self, p_ind: int, strategy: str = "AffineLocal") -> np.ndarray:
-        """(n, 2) log map from p_ind, in its frame. strategy: "AffineLocal" (Alg. 1 of [SS25]) or "AffineAdaptive" (Alg. 2)."""
+    def compute_log_map(self, p_ind: SupportsIndex, strategy: str = "AffineLocal") -> np.ndarray:
+        """(n, 2) log map from p_ind, in its frame, with the strategies of meshes."""
         return super().compute_log_map(p_ind, strategy)
 
 
-class EdgeFlipGeodesicSolver(_On):
+class EdgeFlipGeodesicSolver(OnSurface):
     """Paths on a triangle mesh: shortest between two vertices, locally shortest through several vertices.
+
+    Paths are not computed by iterations: `max_iterations` has no effect.
 
     >>> import ahm, ahm.potpourri3d as pp3d
     >>> paths = pp3d.EdgeFlipGeodesicSolver(*ahm.shapes.plane(4, 3))
     >>> paths.find_geodesic_path(0, 11)[[0, -1]].tolist()
     [[0.0, 0.0, 0.0], [3.0, 2.0, 0.0]]
 
-    Raises ValueError (a row out of range; vertices that are not connected), NotImplementedError (limits on iterations).
+    Raises ValueError (a row out of range; vertices that are not connected).
     """
 
-    def __init__(self, V: Any, F: Any, t_coef: float = 1.0) -> None:
+    def __init__(self, V: Matrix, F: Faces, t_coef: float = 1.0) -> None:
         self.surface = TriangleMesh(V, F)
 
-    def find_geodesic_path(self, v_start: int, v_end: int, max_iterations: Optional[int] = None,
+    def find_geodesic_path(self, v_start: SupportsIndex, v_end: SupportsIndex, max_iterations: Optional[int] = None,
                            max_relative_length_decrease: Optional[float] = None) -> np.ndarray:
         """(k, 3) points of the shortest path. Raises ValueError if the vertices are not connected."""
-        ends = [self._row(v_start, "v_start"), self._row(v_end, "v_end")]
-        return self._path(geodesic_path, ends, max_iterations, max_relative_length_decrease)
+        ends = np.array([self._row(v_start, "v_start"), self._row(v_end, "v_end")])
+        return self._points(geodesic_path(self.surface, ends), ends)
 
-    def find_geodesic_paths(self, v_starts: Any, v_ends: Any) -> List[np.ndarray]:
+    def find_geodesic_paths(self, v_starts: Vector, v_ends: Vector) -> List[np.ndarray]:
         """The shortest path from v_starts[i] to v_ends[i] for every i, as from `find_geodesic_path`."""
         starts, ends = self._rows(v_starts, "v_starts"), self._rows(v_ends, "v_ends")
         found = geodesic_paths(self.surface, starts, ends, pairwise=True)
         return [self._points(path, [a, b]) for path, a, b in zip(found, starts, ends)]
 
-    def find_geodesic_path_poly(self, v_list: Any, max_iterations: Optional[int] = None,
+    def find_geodesic_path_poly(self, v_list: Vector, max_iterations: Optional[int] = None,
                                 max_relative_length_decrease: Optional[float] = None) -> np.ndarray:
-        """(k, 3) points of the path through the vertices, pulled taut until it is locally shortest. Only its ends are fixed."""
-        return self._path(_pulled_taut, v_list, max_iterations, max_relative_length_decrease)
+        """(k, 3) points of the path through the vertices, pulled taut until it is locally shortest. Only its ends are fixed.
 
-    def find_geodesic_loop(self, v_list: Any, max_iterations: Optional[int] = None,
+        If it were shorter than `max_relative_length_decrease` times the path of shortest paths between the vertices, the latter is
+        returned."""
+        return self._taut(v_list, False, max_relative_length_decrease)
+
+    def find_geodesic_loop(self, v_list: Vector, max_iterations: Optional[int] = None,
                            max_relative_length_decrease: Optional[float] = None) -> np.ndarray:
         """(k, 3) points of a closed geodesic: the closed path through the vertices, pulled taut until it is locally shortest.
 
-        If nothing holds the loop, it shrinks to one point."""
-        return self._path(geodesic_loop, v_list, max_iterations, max_relative_length_decrease)
+        If nothing holds the loop, it shrinks to one point. `max_relative_length_decrease` as in `find_geodesic_path_poly`."""
+        return self._taut(v_list, True, max_relative_length_decrease)
 
-    def _path(self, find: Any, vertices: Any, *limits: Any) -> np.ndarray:
-        if any(limit is not None for limit in limits):
-            raise NotImplementedError("max_iterations, max_relative_length_decrease: not supported; paths are not computed by iterations")
-        rows = self._rows(vertices, "v_list")
-        return self._points(find(self.surface, rows), rows)
+    def _taut(self, v_list: Vector, closed: bool, max_relative_length_decrease: Optional[float]) -> np.ndarray:
+        rows = self._rows(v_list, "v_list")
+        least = arguments.real(max_relative_length_decrease or 0, "max_relative_length_decrease")
+        path = geodesic_path(self.surface, rows, closed=closed, taut=True)
+        if path is not None and least > 0:
+            before = geodesic_path(self.surface, rows, closed=closed)
+            if before is not None and path.length < least * before.length:
+                path = before
+        return self._points(path, rows)
 
     @staticmethod
-    def _points(path: Any, rows: Any) -> np.ndarray:
+    def _points(path: Optional[Path], rows: Union[np.ndarray, Sequence[int]]) -> np.ndarray:
         if path is None:
             raise ValueError(f"no path connects the vertices {[int(r) for r in rows]}")
         return path.points
 
 
-def _pulled_taut(surface: Surface, rows: np.ndarray) -> Any:
-    return geodesic_path(surface, rows, taut=True)
-
-
-class GeodesicTracer(_On):
+class GeodesicTracer(OnSurface):
     """Straightest geodesics on a triangle mesh (`ahm.trace`). Their length is the length of `direction_xyz`.
 
     >>> import ahm, ahm.potpourri3d as pp3d
@@ -379,38 +346,38 @@ class GeodesicTracer(_On):
     >>> tracer.trace_geodesic_from_vertex(0, [1.5, 1.0, 0.0])[-1].round(9).tolist()
     [1.5, 1.0, 0.0]
 
-    Raises ValueError (a row or face out of range; invalid barycentric coordinates; a direction of length 0), NotImplementedError
-    (a limit on iterations).
+    Raises ValueError (a row or face out of range; invalid barycentric coordinates; a direction of length 0).
     """
 
-    def __init__(self, V: Any, F: Any, t_coef: float = 1.0) -> None:
+    def __init__(self, V: Matrix, F: Faces, t_coef: float = 1.0) -> None:
         self.surface = TriangleMesh(V, F)
 
-    def trace_geodesic_from_vertex(self, start_vert: int, direction_xyz: Any, max_iterations: Optional[int] = None) -> np.ndarray:
-        """(k, 3) points of the geodesic. It ends at the boundary if it reaches it."""
+    def trace_geodesic_from_vertex(self, start_vert: SupportsIndex, direction_xyz: Vector,
+                                   max_iterations: Optional[int] = None) -> np.ndarray:
+        """(k, 3) points of the geodesic. It ends at the boundary if it reaches it, or after `max_iterations` triangles."""
         return self._trace(self._row(start_vert, "start_vert"), direction_xyz, max_iterations)
 
-    def trace_geodesic_from_face(self, start_face: int, bary_coords: Any, direction_xyz: Any,
+    def trace_geodesic_from_face(self, start_face: SupportsIndex, bary_coords: Vector, direction_xyz: Vector,
                                  max_iterations: Optional[int] = None) -> np.ndarray:
-        """(k, 3) points of the geodesic. It ends at the boundary if it reaches it."""
+        """(k, 3) points of the geodesic. It ends at the boundary if it reaches it, or after `max_iterations` triangles."""
         face = arguments.integer(start_face, "start_face", 0, self.surface._face_count - 1)
         return self._trace((face, bary_coords), direction_xyz, max_iterations)
 
-    def trace_geodesics_from_vertices(self, start_verts: Any, directions_xyz: Any) -> List[np.ndarray]:
+    def trace_geodesics_from_vertices(self, start_verts: Vector, directions_xyz: Matrix) -> List[np.ndarray]:
         """The geodesic from start_verts[i] in the direction directions_xyz[i], for every i."""
         starts = self._rows(start_verts, "start_verts")
         directions = arguments.floats(directions_xyz, "directions_xyz", (len(starts), 3), finite=True)
         return [self._trace(int(v), d, None) for v, d in zip(starts, directions)]
 
-    def _trace(self, start: Any, direction: Any, max_iterations: Optional[int]) -> np.ndarray:
-        if max_iterations is not None:
-            raise NotImplementedError("max_iterations: not supported; geodesics are traced to their full length")
-        return trace(self.surface, start, direction).points
+    def _trace(self, start: Source, direction: Vector, max_iterations: Optional[int]) -> np.ndarray:
+        points = trace(self.surface, start, direction).points
+        return points if max_iterations is None else points[: arguments.integer(max_iterations, "max_iterations", 1, 2**63 - 1) + 1]
 
 
 __all__ = [
-    "EdgeFlipGeodesicSolver", "GeodesicTracer", "MeshHeatMethodDistanceSolver", "MeshVectorHeatSolver",
-    "PointCloudHeatSolver", "PolygonMeshHeatSolver", "compute_distance", "compute_distance_multisource",
-    "cotan_laplacian", "edges", "face_areas", "read_mesh", "read_point_cloud", "read_polygon_mesh",
-    "vertex_areas", "write_mesh", "write_point_cloud",
+    "EdgeFlipGeodesicSolver", "GeodesicTracer", "MeshFastMarchingDistanceSolver", "MeshHeatMethodDistanceSolver",
+    "MeshMarchingTrianglesSolver", "MeshSignedHeatSolver", "MeshVectorHeatSolver", "PointCloudHeatSolver",
+    "PointCloudLocalTriangulation", "PolygonMeshHeatSolver", "compute_distance", "compute_distance_multisource",
+    "cotan_laplacian", "edges", "face_areas", "marching_triangles", "read_mesh", "read_point_cloud", "read_polygon_mesh",
+    "validate_mesh", "validate_points", "vertex_areas", "write_mesh", "write_point_cloud",
 ]

@@ -281,8 +281,8 @@ def test_objects_of_other_packages_are_taken_by_what_they_have(plane, sphere):
     padded = np.concatenate([np.full((len(F), 1), 3), F], axis=1).ravel()
     quads = {"quad": np.array([[0, 1, 14, 13]])}
     for thing in (Thing(points=V, regular_faces=F), Thing(points=V, faces=padded), Thing(vertices=V, faces=F),
-                  Thing(vertices=V, triangles=F), Thing(points=V, cells_dict={"triangle": F}), Thing(points=V, cells_dict={5: F, 3: F[:, :2]}),
-                  Thing(vertices=V, faces=F, triangles=V[F])):
+                  Thing(vertices=V, triangles=F), Thing(points=V, cells_dict={"triangle": F}),
+                  Thing(points=V, cells_dict={5: F, 3: F[:, :2]}), Thing(vertices=V, faces=F, triangles=V[F])):
         assert repr(ahm.surface(thing)) == repr(ahm.TriangleMesh(V, F))
     assert isinstance(ahm.surface(Thing(points=V, cells_dict=quads)), ahm.PolygonMesh)
     assert isinstance(ahm.surface(Thing(points=V, cells_dict={**quads, "triangle": np.delete(F, [0, 120], axis=0)})), ahm.PolygonMesh)
@@ -293,7 +293,8 @@ def test_objects_of_other_packages_are_taken_by_what_they_have(plane, sphere):
             ahm.surface(Thing(points=V, cells_dict={"triangle": F, kind: np.array([[0, 1, 2, 3]])}))
     mixed = np.array([3, 0, 1, 14, 4, 1, 2, 15, 14])
     assert [len(face) for face in ahm.surface(Thing(points=V, faces=mixed)).faces] == [3, 4]
-    for padded, text in (([-1, 0, 1, 2], r"faces\[0\]: cannot read a face of -1"), ([3, 0, 1, 13, 4, 1, 2], r"faces\[4\]: cannot read a face of 4 corners; numbers left in the array: 2"),
+    for padded, text in (([-1, 0, 1, 2], r"faces\[0\]: cannot read a face of -1"),
+                         ([3, 0, 1, 13, 4, 1, 2], r"faces\[4\]: cannot read a face of 4 corners; numbers left in the array: 2"),
                          ([3, 0, 1.5, 13], r"faces\[2\]: 1.5")):
         with pytest.raises(ValueError, match=text):
             ahm.surface(Thing(points=V, faces=np.array(padded)))
@@ -344,7 +345,65 @@ def test_tensors_are_arrays(sphere):
         ahm.TriangleMesh(Elsewhere(sphere.points), sphere.faces)
 
 
-def test_files_are_read_as_what_they_hold(tmp_path):
+class Frame:
+    """As a data frame: its index operator selects columns, and its protocol is `__array__`."""
+
+    def __init__(self, values):
+        self.values = values
+
+    def __array__(self, dtype=None):
+        return np.asarray(self.values, dtype)
+
+    def __len__(self):
+        return len(self.values)
+
+    def __getitem__(self, column):
+        raise KeyError(column)
+
+
+class DlpackOnly:
+    """As a tensor without `__array__`."""
+
+    def __init__(self, values):
+        self.values = np.array(values)
+
+    def __dlpack__(self, **options):
+        return self.values.__dlpack__(**options)
+
+    def __dlpack_device__(self):
+        return self.values.__dlpack_device__()
+
+    def __len__(self):
+        return len(self.values)
+
+
+def arrays_of(package):
+    if package == "pandas":
+        pandas = pytest.importorskip("pandas")
+        return lambda values: pandas.DataFrame(values) if np.ndim(values) == 2 else pandas.Series(values, index=np.arange(len(values)) + 7)
+    return pytest.importorskip("torch").tensor
+
+
+@pytest.mark.parametrize("make", [Frame, DlpackOnly, "pandas", "torch"])
+def test_arrays_of_other_packages_are_arrays_everywhere(make, sphere):
+    make = arrays_of(make) if isinstance(make, str) else make
+    V, F = np.array(sphere.points), np.array(sphere.faces)
+    mesh = ahm.TriangleMesh(make(V), make(F))
+    np.testing.assert_array_equal(mesh.points, V)
+    assert repr(ahm.surface((make(V), make(F)))) == repr(sphere) and repr(ahm.surface(make(V))) == "<ahm.PointCloud: 642 points>"
+    rows, position, u_axis = np.array([3, 99, 7]), np.array([0.1, 0.2, 0.9]), np.array([0.0, 1.0, 0.0])
+    solver = ahm.LogMapSolver(sphere)
+    for call in (lambda of: ahm.log_map(sphere, of(position), u_axis=of(u_axis)).uv, lambda of: ahm.distance(sphere, of(rows)),
+                 lambda of: ahm.distance(sphere, of(V[:4] * 1.1)), lambda of: ahm.distance(sphere, 0, targets=of(rows)),
+                 lambda of: np.stack([m.uv for m in solver.log_maps(of(rows))]), lambda of: ahm.extend(solver, of(rows), of(rows / 7)),
+                 lambda of: ahm.transport(solver, of(rows[:1]), of(V[:1])), lambda of: ahm.PointCloud(of(V), of(V)).normals,
+                 lambda of: sphere.closest_points(of(V * 2)).position, lambda of: ahm.cells(sphere, of(rows)).labels,
+                 lambda of: ahm.log_map(sphere, (7, of(np.array([0.2, 0.3, 0.5])))).uv,
+                 lambda of: ahm.karcher_mean(solver, of(rows), of(np.ones(3))).position):
+        np.testing.assert_array_equal(call(make), call(np.asarray))
+
+
+def test_files_are_read_as_what_they_contain(tmp_path):
     obj = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
     for faces, kind in (("f 1 2 3\nf 1 3 4\n", ahm.TriangleMesh), ("f 1 2 3 4\n", ahm.PolygonMesh), ("", ahm.PointCloud)):
         path = tmp_path / "shape.obj"
@@ -353,3 +412,12 @@ def test_files_are_read_as_what_they_hold(tmp_path):
         assert type(s) is kind and s.points.tolist() == [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
     with pytest.raises(ValueError, match="no faces"):
         ahm.read(path, kind="triangles")
+
+
+def test_the_length_unit_of_a_graph_is_a_power_of_two(sphere):
+    g = sphere.graph
+    for unit in (0.25, 1.0, 2.0**-1000):
+        assert ahm.Graph(*g[:6], length_unit=unit).graph.length_unit == unit
+    for unit in (3.0, 0.1, 1 + 2**-52, -2.0, 0.0, float("inf")):
+        with pytest.raises(ValueError, match="length_unit: "):
+            ahm.Graph(*g[:6], length_unit=unit)

@@ -1,4 +1,4 @@
-"""Points named in every way are the same points, wherever one is taken."""
+"""Every form of a point has the same result, in every function that takes points."""
 
 import numpy as np
 import pytest
@@ -137,7 +137,7 @@ def test_means_of_points_between_rows_are_means_of_their_positions(flat_surfaces
             np.testing.assert_allclose(ahm.log_map(s, mean.point, method=method).distance, away, atol=1e-8)
 
 
-def test_means_of_the_sphere_are_on_it_and_tell_how_good_they_are(sphere):
+def test_means_of_the_sphere_are_on_it_and_estimate_their_error(sphere):
     rng = np.random.default_rng(5)
     faces, weights = rng.integers(0, 1280, 9), rng.dirichlet(np.ones(3), 9)
     near = (sphere.points[sphere.faces[faces]].mean(axis=1) @ [0, 0, 1]) > -0.2
@@ -147,7 +147,7 @@ def test_means_of_the_sphere_are_on_it_and_tell_how_good_they_are(sphere):
         assert mean.converged and 0 < mean.residual < most
         face, inside = mean.point
         np.testing.assert_allclose(inside @ sphere.points[sphere.faces[face]], mean.position, atol=1e-12)
-        # One map does not suffice from afar: it says so.
+        # From far away, one map is not sufficient: the search has not converged.
         far = ahm.karcher_mean(sphere, points, method=method, max_maps=1, start=[0.9, 0.9, 0.1])
         assert not far.converged and far.residual > mean.residual
 
@@ -204,3 +204,17 @@ def test_noisy_points_are_smoothed_unless_that_is_turned_off(sphere):
     noisy = sphere.points * np.where(np.arange(len(sphere.points)) ** 2 % 7 < 3, 1.05, 0.95)[:, None]
     smoothed = {s: any(w["id"] == "smoothed" for w in ahm.PointCloud(noisy, smooth=s).warnings) for s in (None, 0, 0.5)}
     assert smoothed == {None: True, 0: False, 0.5: True}
+
+
+@pytest.mark.parametrize("several", [[3], [3, 4], [0, 5, 7], (0, 5, 7), np.array([0, 5, 7]), np.array([[3, 4]]),
+                                     np.arange(9, dtype=np.uint8)], ids=str)
+def test_integers_are_no_position(sphere, several):
+    """They look like rows. Floats are a position."""
+    for make in (ahm.log_map, ahm.SurfaceSolver(sphere).log_map, ahm.LogMapSolver(sphere).log_map):
+        with pytest.raises(ValueError, match="source: .*use log_maps for several rows"):
+            make(*([sphere] if make is ahm.log_map else []), several)
+    for call, name in ((lambda: ahm.trace(sphere, several, [1.0, 0, 0]), "start"), (lambda: ahm.geodesic_path(sphere, several, 9), "stops"),
+                       (lambda: ahm.geodesic_path(sphere, 9, several), "to"), (lambda: ahm.farthest_points(sphere, 3, several), "first")):
+        with pytest.raises(ValueError, match=f"{name}: expected one row, or a position of 3 floats; got integers"):
+            call()
+    np.testing.assert_array_equal(ahm.log_map(sphere, [0, 0, 1.0]).uv, ahm.log_map(sphere, np.array([0.0, 0.0, 1.0])).uv)

@@ -1,5 +1,6 @@
 // Shortest paths and straight lines.
 #include <cmath>
+#include <numbers>
 
 #include "ahm/io/read.hpp"
 #include "program.hpp"
@@ -131,6 +132,24 @@ TEST_F(Trace, ClosesAroundACubeAndEndsAtABoundary) {
   expect_values(json, {{"/end/at", "boundary"}});
   EXPECT_NEAR(number(json, "/length"), 0.75, 1e-12);
   EXPECT_NEAR(read_csv("line.csv").back()["x"], 4, 1e-12);
+}
+
+// The line of length L at angle a ends where the map of the source has the coordinates L (cos a, sin a).
+TEST_F(Trace, TakesAnAngleFromTheUAxis) {
+  for (const std::string& source :
+       {"cube.off --source face:2:.2,.3,.3,.2", "cube.off --source face:6:.25,.25,.25,.25", "plane.xyz --source 0"})
+    for (const double degrees : {0.0, 30.0, -117.5}) {
+      const double a = degrees * std::numbers::pi / 180;
+      const auto line = table("trace " + source + " --length 0.2 --direction=" + std::to_string(degrees)),
+                 point = table("inverse " + source + " --at=" + std::to_string(0.2 * std::cos(a)) + "," +
+                               std::to_string(0.2 * std::sin(a)));
+      EXPECT_LT(distance(line.back().position(), point.front().position()), 4e-6) << source << " " << degrees;
+    }
+  write("lines.txt", "0 30 0.2\n");
+  run_ok("trace plane.xyz --lines lines.txt -o lines.csv");
+  const auto line = table("trace plane.xyz --source 0 --direction 30 --length 0.2");
+  EXPECT_LT(distance(read_csv("lines.csv").back().position(), line.back().position()), 1e-12);
+  expect_refused("trace cube.off --source 0 --length 1 -o line.csv", {{"--direction 30,5", 2, {"--direction"}}});
 }
 
 TEST_F(Trace, FollowsEveryLineOfAFile) {

@@ -1,8 +1,11 @@
 #include <fmt/format.h>
 
+#include <cmath>
 #include <sstream>
+#include <variant>
 
 #include "ahm/error.hpp"
+#include "ahm/util/vec.hpp"
 #include "cli/option_adders.hpp"
 #include "cli/source_list.hpp"
 #include "commands/line_finder.hpp"
@@ -16,16 +19,23 @@ constexpr const char* trace_footer =
     "SPEC is 123, x,y,z (the nearest point of the surface) or face:7:.2,.3,.5 as in 'ahm path'.\n"
     "The line runs straight through faces, and through vertices with equal angles on both sides. Over a cloud it runs\n"
     "from tangent plane to tangent plane. It ends early at a boundary.\n"
-    "LINES is a file with one line per row: SPEC X,Y,Z, followed by its length L unless --length is set.\n"
+    "DIRECTION is a vector X,Y,Z in space, projected to the surface, or an angle in degrees from the u axis of\n"
+    "'ahm logmap' at the source, counter-clockwise. A vector must be at least 1 degree from the normal, 5 if normals "
+    "are\n"
+    "estimated.\n"
+    "LINES is a file with one line per row: SPEC DIRECTION, followed by its length L unless --length is set.\n"
     "OUTPUT is .csv, .ply, .obj, ... as in 'ahm path'. With LINES it also has curve, the number of the line, from 0.\n"
     "\n"
     "Example:\n"
     "  ahm trace mesh.ply --source 17 --direction 1,0,0 --length 0.5 -o line.csv --view line.png";
 
+/// A vector in space, or an angle from the u axis, radians.
+using Direction = std::variant<Vec3, double>;
+
 /// A line to trace.
 struct LineRequest {
   std::optional<SourceSpec> source;
-  Vec3 direction{};
+  Direction direction;
   double length = 0;  ///< 0: that of --length
 };
 
@@ -36,29 +46,43 @@ struct TraceCommandOptions {
   std::vector<LineRequest> lines;  ///< lines of --lines, instead of `line`
 };
 
+Direction parse_vector_or_angle(std::string_view text) {
+  if (text.find(',') == std::string_view::npos) return parse_degrees(text);
+  return parse_direction(text);
+}
+
 LineRequest parse_line(const std::string& text) {
   std::istringstream stream(text);
   std::vector<std::string> words;
   for (std::string word; stream >> word;) words.push_back(word);
   if (words.size() != 2 && words.size() != 3)
-    throw std::invalid_argument(fmt::format("expected SPEC X,Y,Z or SPEC X,Y,Z L, found '{}'", text));
-  return {parse_source(words[0]), parse_direction(words[1]), words.size() == 3 ? parse_positive(words[2]) : 0.0};
+    throw std::invalid_argument(fmt::format("expected SPEC DIRECTION or SPEC DIRECTION L, found '{}'", text));
+  return {parse_source(words[0]), parse_vector_or_angle(words[1]), words.size() == 3 ? parse_positive(words[2]) : 0.0};
 }
 
 std::vector<LineRequest> read_lines(const std::string& file) {
-  require_file(file, "SPEC X,Y,Z in each row");
+  require_file(file, "SPEC DIRECTION in each row");
   std::vector<LineRequest> lines;
   for_each_line(file, file, "lines", [&](const std::string& line) { lines.push_back(parse_line(line)); });
   return lines;
 }
 
-FoundLine trace(const LineFinder& finder, const SurfacePoint& from, const LineRequest& line, const char* option) {
+FoundLine trace(const Input& input, const LineFinder& finder, const SurfacePoint& from, const LineRequest& line,
+                const char* option) {
+  if (const auto* angle = std::get_if<double>(&line.direction)) {
+    const auto frame = input.surface().source(from).frame;
+    if (!frame)
+      throw InvalidArgument(
+          fmt::format("{}: the source {} has no u axis; use a vector X,Y,Z", option, to_string(*line.source)));
+    return finder.trace(from, std::cos(*angle) * frame->x + std::sin(*angle) * frame->y, line.length);
+  }
+  const Vec3& direction = std::get<Vec3>(line.direction);
   try {
-    return finder.trace(from, line.direction, line.length);
+    return finder.trace(from, direction, line.length);
   } catch (const InvalidArgument& e) {
     if (e.fault() != "axis_along_normal") throw;
-    throw InvalidArgument(fmt::format("{} {},{},{}: at the source {} {}", option, line.direction[0], line.direction[1],
-                                      line.direction[2], to_string(*line.source), e.problem()));
+    throw InvalidArgument(fmt::format("{} {},{},{}: at the source {} {}", option, direction[0], direction[1],
+                                      direction[2], to_string(*line.source), e.problem()));
   }
 }
 
@@ -70,7 +94,7 @@ Polylines find_lines(const TraceCommandOptions& options, const LineFinder& finde
   for (LineRequest wanted : options.lines) {
     if (wanted.length == 0) wanted.length = options.line.length;
     const SurfacePoint from = point_on_surface(input, *wanted.source, "--lines");
-    const FoundLine line = trace(finder, from, wanted, "--lines");
+    const FoundLine line = trace(input, finder, from, wanted, "--lines");
     result.add(line.points);
     result.json["lines"].push_back({{"source", to_string(*wanted.source)},
                                     {"end", line.complete ? "length" : "boundary"},
@@ -89,7 +113,7 @@ Polylines find_lines(const TraceCommandOptions& options, const LineFinder& finde
 Polylines find_line(const TraceCommandOptions& options, const LineFinder& finder, const Input& input) {
   Polylines result;
   result.from = point_on_surface(input, *options.line.source, "--source");
-  const FoundLine line = trace(finder, *result.from, options.line, "--direction");
+  const FoundLine line = trace(input, finder, *result.from, options.line, "--direction");
   result.add(line.points);
   const std::vector<Vec3>& points = result.points;
   result.json["source"] = {{"spec", to_string(*options.line.source)}, {"position", points.front()}};
@@ -118,9 +142,8 @@ void offer(CLI::App& app, TraceCommandOptions& o) {
   auto* source = add_parsed(
       app, "-s,--source", o.line.source, [](const std::string& text) { return parse_source(text); }, "SPEC",
       "Start of the line, see below");
-  auto* direction = add_parsed(
-      app, "--direction", o.line.direction, parse_direction, "X,Y,Z",
-      "Direction in space, projected to the surface; at least 1 degree from the normal, 5 if normals are estimated");
+  auto* direction = add_parsed(app, "--direction", o.line.direction, parse_vector_or_angle, "DIRECTION",
+                               "X,Y,Z in space, or degrees from the u axis; see below");
   auto* length =
       add_parsed(app, "--length", o.line.length, parse_positive, "L", "Length of the line, along the surface");
   auto* lines = add_parsed(app, "--lines", o.lines, read_lines, "LINES",
