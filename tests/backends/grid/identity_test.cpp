@@ -1,4 +1,4 @@
-// On a grid the log map is the position relative to the source, in any dimension and from any point.
+// On a grid the log map is the position relative to the source, in two and three dimensions and from any point.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,27 +13,18 @@ namespace {
 using grid::Grid;
 using grid::GridGraph;
 
-const std::vector<Grid> grids{
-    {.shape = {40, 25}, .spacing = {0.1, 0.1}},
-    {.shape = {25, 40}, .spacing = {0.02, 0.05}, .origin = {-3, 8}},
-    {.shape = {30, 30}, .spacing = {1e-200, 2e-200}},
-    {.shape = {2, 30}, .spacing = {1e150, 2e150}},
-    {.shape = {9, 8, 7}, .spacing = {1, 1, 1}},
-    {.shape = {8, 2, 9}, .spacing = {0.3, 0.2, 0.1}, .origin = {0.1, 0.2, 0.3}},
-};
-
 class GridMap : public testing::TestWithParam<Grid> {
  protected:
   GridMap() : grid(GetParam()), solver(grid), d(grid.dimension()) {
+    const double unit = grid.length_unit();
     for (int a = 0; a < d; ++a) diameter += std::pow(at(grid.size() - 1)[a] / unit - at(0)[a] / unit, 2);
     diameter = std::sqrt(diameter) * unit;
   }
   Vec3 at(Index i) const { return grid.position(Vertex(i)); }
-  /// A point of the box, each coordinate at its share of the way through.
-  std::vector<double> point(double x, double y, double z) const {
+  /// A point of the box. The fractions are 0 at vertex 0 and 1 at the last vertex.
+  std::vector<double> point(const Vec3& fractions) const {
     std::vector<double> p;
-    for (int a = 0; a < d; ++a)
-      p.push_back(at(0)[a] + (a == 0 ? x : a == 1 ? y : z) * (at(grid.size() - 1)[a] - at(0)[a]));
+    for (int a = 0; a < d; ++a) p.push_back(at(0)[a] + fractions[a] * (at(grid.size() - 1)[a] - at(0)[a]));
     return p;
   }
   template <class Point>
@@ -47,24 +38,23 @@ class GridMap : public testing::TestWithParam<Grid> {
   GridGraph grid;
   LogMapSolver solver;
   int d;
-  double unit = grid.length_unit(), diameter = 0;
+  double diameter = 0;
 };
 
-TEST_P(GridMap, IsTheIdentityFromEveryVertex) {
-  for (Variant variant : all_variants)
+TEST_P(GridMap, IsTheIdentityFromEveryVertexAndPoint) {
+  for (Variant variant : all_variants) {
     for (Index p : {Index{0}, grid.size() / 3, grid.size() / 2, grid.size() - 1})
       expect_identity(solver.solve(Source::at_vertex(Vertex(p)), {.variant = variant}), at(p));
+    // In the middle, near and on the border, on a face of a cell, on a vertex.
+    for (const Vec3& fractions : {Vec3{0.53, 0.41, 0.37}, {0.001, 1, 0.5}, {0, 0.3, 0}, {1, 1, 1}}) {
+      const std::vector<double> p = point(fractions);
+      expect_identity(solver.solve(grid.source_at(p), {.variant = variant}), p);
+    }
+  }
 }
 
-TEST_P(GridMap, IsTheIdentityFromEveryPoint) {
-  // In the middle, near and on the border, on a face of a cell, on a vertex.
-  for (const auto& p : {point(0.53, 0.41, 0.37), point(0.001, 1, 0.5), point(0, 0.3, 0), point(1, 1, 1)})
-    for (Variant variant : all_variants) expect_identity(solver.solve(grid.source_at(p), {.variant = variant}), p);
-}
-
-TEST_P(GridMap, TurnsWithTheSourceFrame) {
-  // x -> y, y -> -x.
-  std::vector<double> axes(d * d, 0.0), zero(d, 0.0);
+TEST_P(GridMap, RotatesWithTheSourceFrame) {
+  std::vector<double> axes(d * d, 0.0), zero(d, 0.0);  // x -> y, y -> -x
   axes[d] = 1, axes[1] = -1;
   if (d == 3) axes[8] = 1;
   const Index p = grid.size() / 3;
@@ -75,41 +65,36 @@ TEST_P(GridMap, TurnsWithTheSourceFrame) {
   }
 }
 
-TEST_P(GridMap, SolvesManySourcesAtOnce) {
-  std::vector<Source> sources;
-  for (double x : {0.1, 0.4, 0.7, 0.9}) sources.push_back(grid.source_at(point(x, 1 - x, x * x)));
-  for (Index p = 0; p < 20; ++p) sources.push_back(Source::at_vertex(Vertex(p)));
-  const auto maps = solver.solve(sources, {.threads = 3});
-  for (std::size_t s = 0; s < 4; ++s) {
-    const double x = std::array{0.1, 0.4, 0.7, 0.9}[s];
-    expect_identity(maps[s], point(x, 1 - x, x * x));
-  }
-  for (Index p = 0; p < 20; ++p) expect_identity(maps[4 + p], at(p));
-}
-
-TEST_P(GridMap, TransportsVectorsWithoutChange) {
+TEST_P(GridMap, HasConstantTransportAndTheRadialFieldOfFlatSpace) {
   const std::vector<double> vector{2.0, -1.5, 0.25};
-  const auto field = transport_vectors(solver, std::array{Vertex{3}}, std::span(vector).first(d));
-  for (Index i = 0; i < grid.size(); ++i)
-    for (int a = 0; a < d; ++a) ASSERT_NEAR(field.values[i * d + a], vector[a], 1e-11);
-  const auto frame = parallel_transport(solver, grid.source_at(point(0.4, 0.6, 0.1)));
-  for (Index i = 0; i < grid.size(); ++i)
-    for (int k = 0; k < d * d; ++k) ASSERT_NEAR(frame.values[i * d * d + k], k % (d + 1) == 0 ? 1.0 : 0.0, 1e-11);
+  const auto transported = transport_vectors(solver, std::array{Vertex{3}}, std::span(vector).first(d)),
+             frames = parallel_transport(solver, grid.source_at(point({0.4, 0.6, 0.1}))),
+             radial = radial_field(solver, Source::at_vertex(Vertex{3}));
+  for (Index i = 0; i < grid.size(); ++i) {
+    for (int a = 0; a < d; ++a) {
+      ASSERT_NEAR(transported.values[i * d + a], vector[a], 1e-11);
+      ASSERT_NEAR(radial.values[i * d + a], at(i)[a] - at(3)[a], 1e-11 * diameter);
+    }
+    for (int k = 0; k < d * d; ++k) ASSERT_NEAR(frames.values[i * d * d + k], k % (d + 1) == 0 ? 1.0 : 0.0, 1e-11);
+  }
 }
 
-TEST_P(GridMap, HasTheRadialFieldOfFlatSpace) {
-  const auto field = radial_field(solver, Source::at_vertex(Vertex{3}));
-  for (Index i = 0; i < grid.size(); ++i)
-    for (int a = 0; a < d; ++a) ASSERT_NEAR(field.values[i * d + a], at(i)[a] - at(3)[a], 1e-11 * diameter);
-}
+INSTANTIATE_TEST_SUITE_P(
+    Grids, GridMap,
+    testing::Values(Grid{.shape = {40, 25}, .spacing = {0.1, 0.1}},
+                    Grid{.shape = {25, 40}, .spacing = {0.02, 0.05}, .origin = {-3, 8}},
+                    Grid{.shape = {30, 30}, .spacing = {1e-200, 2e-200}},
+                    Grid{.shape = {2, 30}, .spacing = {1e150, 2e150}}, Grid{.shape = {9, 8, 7}, .spacing = {1, 1, 1}},
+                    Grid{.shape = {8, 2, 9}, .spacing = {0.3, 0.2, 0.1}, .origin = {0.1, 0.2, 0.3}}),
+    [](const auto& info) { return "grid" + std::to_string(info.index); });
 
-// Bands of volumes are solved by conjugate gradients.
+// Conjugate gradients solve the bands of volumes.
 TEST(GridMarch, IsTheIdentityInSpace) {
   const GridGraph grid({.shape = {34, 28, 30}, .spacing = {1, 1.3, 0.8}});
   const Vertex p = grid.vertex(std::array<Index, 3>{3, 14, 11});
   const LogMapSolver solver(grid, {.strategy = Strategy::march});
   for (Variant variant : all_variants) {
-    const LogMap map = solver.solve(Source::at_vertex(Vertex(p)), {.variant = variant});
+    const LogMap map = solver.solve(Source::at_vertex(p), {.variant = variant});
     EXPECT_GT(map.march().bands, 3);
     for (Index i = 0; i < grid.size(); ++i)
       for (int a = 0; a < 3; ++a)
@@ -118,7 +103,7 @@ TEST(GridMarch, IsTheIdentityInSpace) {
   }
 }
 
-TEST(GridBlocks, GiveTheMapOfComplexNumbers) {
+TEST(GridBlocks, HaveTheMapOfRotations) {
   const GridGraph grid({.shape = {25, 40}, .spacing = {0.02, 0.05}});
   const CsrGraph blocks(as_blocks(stored(grid)));
   const LogMapSolver solver(grid), solver_on_blocks(blocks);
@@ -130,9 +115,6 @@ TEST(GridBlocks, GiveTheMapOfComplexNumbers) {
       ASSERT_NEAR(map.coordinates()[k], other.coordinates()[k], 1e-11 * 2.0);
   }
 }
-
-INSTANTIATE_TEST_SUITE_P(Grids, GridMap, testing::ValuesIn(grids),
-                         [](const auto& info) { return "grid" + std::to_string(info.index); });
 
 }  // namespace
 }  // namespace ahm::test

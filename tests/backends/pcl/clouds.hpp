@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-#include "ahm/types.hpp"
+#include "ahm/util/vec.hpp"
 
 namespace ahm::test {
 
@@ -28,9 +28,6 @@ inline std::vector<Vec3> flat_square(int m) {
   return points;
 }
 
-inline double squared_distance(const Vec3& a, const Vec3& b) {
-  const double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
-  return x * x + y * y + z * z;
-}
+inline double squared_distance(const Vec3& a, const Vec3& b) { return dot(a - b, a - b); }
 
 }  // namespace ahm::test

@@ -5,7 +5,6 @@
 
 #include <cmath>
 #include <filesystem>
-#include <limits>
 
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/pcl/search.hpp"
@@ -14,30 +13,25 @@
 namespace ahm::pcl_bridge {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
 template <typename PointT>
 ::pcl::PointCloud<PointT> make_cloud() {
   ::pcl::PointCloud<PointT> cloud(4, 2);
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    cloud[i].x = static_cast<float>(i);
-    cloud[i].y = 0.5F * static_cast<float>(i);
-    cloud[i].z = -static_cast<float>(i);
-  }
+  float x = 0;
+  for (PointT& p : cloud) p.x = x, p.y = 0.5F * x, p.z = -x, ++x;
   return cloud;
 }
 
+/// A map whose last row is not reached.
 RowLogMap make_map(std::size_t n) {
   RowLogMap map;
   for (std::size_t i = 0; i < n; ++i) {
-    map.u.push_back(static_cast<double>(i));
-    map.v.push_back(0.25);
-    map.distance.push_back(std::hypot(map.u[i], map.v[i]));
-    map.angle.push_back(std::atan2(map.v[i], map.u[i]));
-    map.status.push_back(Status::ok);
+    const double u = i + 1 < n ? static_cast<double>(i) : NAN;
+    map.u.push_back(u);
+    map.v.push_back(0.25 + 0 * u);
+    map.distance.push_back(std::sqrt(u * u + map.v[i] * map.v[i]));
+    map.angle.push_back(std::atan2(map.v[i], u));
+    map.status.push_back(i + 1 < n ? Status::ok : Status::unreached);
   }
-  map.u[n - 1] = map.v[n - 1] = map.distance[n - 1] = map.angle[n - 1] = nan;
-  map.status[n - 1] = Status::unreached;
   return map;
 }
 
@@ -46,7 +40,7 @@ class Convert : public testing::Test {};
 using PointTypes = testing::Types<::pcl::PointXYZ, ::pcl::PointNormal, ::pcl::PointXYZRGB>;
 TYPED_TEST_SUITE(Convert, PointTypes);
 
-TYPED_TEST(Convert, KeepsPositionsOrderAndShapeThereAndBack) {
+TYPED_TEST(Convert, KeepsPositionsOrderAndShapeInBothDirections) {
   auto cloud = make_cloud<TypeParam>();
   cloud.header.frame_id = "scanner";
   const CloudArrays arrays = from_pcl(cloud);
@@ -59,10 +53,9 @@ TYPED_TEST(Convert, KeepsPositionsOrderAndShapeThereAndBack) {
   EXPECT_EQ(back.header.frame_id, "scanner");
   EXPECT_FALSE(back.is_dense);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    EXPECT_EQ(arrays.points[i], (Vec3{cloud[i].x, cloud[i].y, cloud[i].z}));
-    EXPECT_EQ(back[i].x, cloud[i].x);
-    EXPECT_EQ(back[i].y, cloud[i].y);
-    EXPECT_EQ(back[i].z, cloud[i].z);
+    const Vec3 position{cloud[i].x, cloud[i].y, cloud[i].z};
+    EXPECT_EQ(arrays.points[i], position);
+    EXPECT_EQ((Vec3{back[i].x, back[i].y, back[i].z}), position);
     EXPECT_EQ(back[i].status, static_cast<std::uint32_t>(map.status[i]));
     if (map.status[i] != Status::ok) continue;
     EXPECT_EQ(back[i].u, static_cast<float>(map.u[i]));
@@ -76,9 +69,7 @@ TYPED_TEST(Convert, KeepsPositionsOrderAndShapeThereAndBack) {
 TEST(FromPcl, TakesNormalsOnlyFromTypesThatHaveThem) {
   auto with = make_cloud<::pcl::PointNormal>();
   for (auto& p : with) p.normal_z = 1.0F;
-  const CloudArrays arrays = from_pcl(with);
-  ASSERT_EQ(arrays.normals.size(), with.size());
-  for (const Vec3& n : arrays.normals) EXPECT_EQ(n, (Vec3{0, 0, 1}));
+  EXPECT_EQ(from_pcl(with).normals, std::vector<Vec3>(with.size(), Vec3{0, 0, 1}));
   EXPECT_TRUE(from_pcl(make_cloud<::pcl::PointXYZ>()).normals.empty());
   EXPECT_TRUE(from_pcl(make_cloud<::pcl::PointXYZRGB>()).normals.empty());
 }
@@ -96,21 +87,14 @@ TEST(ToPcl, RefusesAMapOfAnotherCloud) {
   EXPECT_THROW(to_pcl(test::random_box(3), make_map(5)), InvalidArgument);
 }
 
-TEST(ToPcl, ClosesTheWayFromAScanToItsMap) {
+TEST(ToPcl, StoresTheMapOfAScan) {
   ::pcl::PointCloud<::pcl::PointNormal> cloud;
-  for (const Vec3& p : test::flat_square(30)) {
-    ::pcl::PointNormal point;
-    point.x = static_cast<float>(p[0]);
-    point.y = static_cast<float>(p[1]);
-    point.normal_z = 1.0F;
-    cloud.push_back(point);
-  }
+  for (const Vec3& p : test::flat_square(30))
+    cloud.push_back({static_cast<float>(p[0]), static_cast<float>(p[1]), 0.0F, 0.0F, 0.0F, 1.0F});
   const CloudArrays scan = from_pcl(cloud);
-  pointcloud::CloudOptions options;
-  options.search = kdtree_search;
-  const auto graph = pointcloud::PointCloudSurface::build(scan.points, scan.normals, options);
-  const LogMapSolver solver(graph.graph());
-  const auto map = graph.to_rows(solver.solve(graph.source(Row(0), Vec3{1, 0, 0}).source));
+  const auto surface = pointcloud::PointCloudSurface::build(scan.points, scan.normals, {.search = kdtree_search});
+  const LogMapSolver solver(surface.graph());
+  const auto map = surface.to_rows(solver.solve(surface.source(Row(0), Vec3{1, 0, 0}).source));
   for (const PointLogMap& p : to_pcl(cloud, map)) {
     EXPECT_EQ(p.status, static_cast<std::uint32_t>(Status::ok));
     EXPECT_NEAR(p.u, p.x - cloud[0].x, 1e-6);
@@ -118,7 +102,7 @@ TEST(ToPcl, ClosesTheWayFromAScanToItsMap) {
   }
 }
 
-TEST(PointLogMap, SurvivesAPcdFile) {
+TEST(PointLogMap, IsStoredInPcdFiles) {
   const auto cloud = to_pcl(make_cloud<::pcl::PointXYZ>(), make_map(8));
   const auto path = std::filesystem::path(testing::TempDir()) / "ahm_point_log_map.pcd";
   ASSERT_EQ(::pcl::io::savePCDFileBinary(path.string(), cloud), 0);
