@@ -49,6 +49,41 @@ inline double largest_difference(const RowLogMap& a, const RowLogMap& b) {
   return largest;
 }
 
+/// Largest difference between (u, v) and the positions relative to `origin` along two axes. Infinite unless every row is mapped.
+inline double flat_error(const RowLogMap& map, std::span<const Vec3> positions, const Vec3& origin, const Vec3& x,
+                         const Vec3& y) {
+  double worst = 0;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const Vec3 offset = positions[i] - origin;
+    const double error = std::hypot(map.u[i] - dot(x, offset), map.v[i] - dot(y, offset));
+    worst = map.status[i] == Status::ok && !std::isnan(error) ? std::max(worst, error) : INFINITY;
+  }
+  return worst;
+}
+
+inline void expect_near(std::span<const double> found, std::span<const double> expected, double tolerance) {
+  for (std::size_t i = 0; i < expected.size(); ++i) ASSERT_NEAR(found[i], expected[i], tolerance) << "row " << i;
+}
+
+/// Expects that row i of `a` has the status, coordinates and distance of row `row_of(i)` of `b`.
+template <class RowOf>
+void expect_same_rows(const RowLogMap& a, const RowLogMap& b, double tolerance, const RowOf& row_of) {
+  for (std::size_t i = 0; i < a.u.size(); ++i) {
+    const auto j = static_cast<std::size_t>(row_of(static_cast<Index>(i)));
+    ASSERT_EQ(a.status[i], b.status[j]) << "row " << i;
+    ASSERT_NEAR(a.u[i], b.u[j], tolerance) << "row " << i;
+    ASSERT_NEAR(a.v[i], b.v[j], tolerance) << "row " << i;
+    ASSERT_NEAR(a.distance[i], b.distance[j], tolerance) << "row " << i;
+  }
+}
+
+/// The map of a surface that is `factor` times as large.
+inline RowLogMap scaled(double factor, RowLogMap map) {
+  for (auto* numbers : {&map.u, &map.v, &map.distance})
+    for (double& x : *numbers) x *= factor;
+  return map;
+}
+
 inline void expect_nan_exactly_where_not_ok(const RowLogMap& map) {
   for (std::size_t i = 0; i < map.status.size(); ++i)
     for (double x : {map.u[i], map.v[i], map.distance[i], map.angle[i]})

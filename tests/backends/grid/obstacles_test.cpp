@@ -18,33 +18,19 @@ namespace {
 using grid::Grid;
 using grid::GridGraph;
 
-/// A random maze without loops: corridors `wide` cells wide between walls one cell thick.
+/// A random maze without loops: each room opens to the right or upwards. Corridors are `wide` cells wide between walls one cell
+/// thick.
 Grid maze(Index rooms, Index wide) {
   const Index step = wide + 1, cells = rooms * step - 1;
   Grid grid{.shape = {cells + 1, cells + 1}, .spacing = {0.1, 0.1}};
   grid.blocked.assign(static_cast<std::size_t>(cells) * cells, 1);
-  const auto open = [&](Index x0, Index y0, Index x1, Index y1) {
-    for (Index y = y0; y < y1; ++y)
-      for (Index x = x0; x < x1; ++x) grid.blocked[static_cast<std::size_t>(y) * cells + x] = 0;
-  };
   std::mt19937 random(1);
-  std::vector<bool> visited(static_cast<std::size_t>(rooms) * rooms, false);
-  std::vector<std::array<Index, 2>> path{{0, 0}};
-  while (!path.empty()) {
-    const auto [x, y] = path.back();
-    visited[y * rooms + x] = true;
-    open(x * step, y * step, x * step + wide, y * step + wide);
-    std::vector<std::array<Index, 2>> next;
-    for (const auto& [u, v] : {std::array{x + 1, y}, {x - 1, y}, {x, y + 1}, {x, y - 1}})
-      if (u >= 0 && v >= 0 && u < rooms && v < rooms && !visited[v * rooms + u]) next.push_back({u, v});
-    if (next.empty()) {
-      path.pop_back();
-      continue;
-    }
-    path.push_back(next[random() % next.size()]);
-    const auto [u, v] = path.back();
-    const Index x0 = std::min(x, u) * step, y0 = std::min(y, v) * step;
-    open(x0, y0, x0 + wide + (u != x ? step : 0), y0 + wide + (v != y ? step : 0));
+  for (Index room = 0; room < rooms * rooms; ++room) {
+    const Index x0 = room % rooms * step, y0 = room / rooms * step;
+    const bool at_right = x0 + wide == cells, at_top = y0 + wide == cells;
+    const bool opens_right = !at_right && (at_top || random() % 2 == 0), opens_up = !at_top && !opens_right;
+    for (Index y = y0; y < y0 + wide + opens_up; ++y)
+      for (Index x = x0; x < x0 + wide + opens_right; ++x) grid.blocked[static_cast<std::size_t>(y) * cells + x] = 0;
   }
   return grid;
 }

@@ -114,6 +114,7 @@ TEST(ScanLines, AroundAPipeAreJoined) {
     const Cloud cloud = pipe(ratio);
     const SolvedCloud solved(cloud.points);
     EXPECT_EQ(solved.surface.details().components, 1) << ratio;
+    EXPECT_EQ(solved.surface.details().degenerate, 0) << ratio;
     EXPECT_FALSE(find_warning(solved.surface, "lines")) << ratio;
     constexpr Index source = around * (rings / 2);
     const RowLogMap map = solved.map(source);
@@ -123,6 +124,16 @@ TEST(ScanLines, AroundAPipeAreJoined) {
       ASSERT_NEAR(map.distance[i], exact, (ratio < 30 ? 0.03 : 0.05) * exact + 0.02) << ratio << ' ' << i;
     }
   }
+}
+
+TEST(ScanLines, OnAPlaneGetPlanesFromWiderNeighborhoods) {
+  // The 30 nearest of most points lie on one line.
+  std::vector<Vec3> points;
+  for (int line = 0; line < 12; ++line)
+    for (int i = 0; i < 120; ++i) points.push_back({0.05 * i, 1.0 * line, 0.0});
+  const auto surface = PointCloudSurface::build(points);
+  EXPECT_EQ(surface.details().degenerate, 0);
+  EXPECT_EQ(surface.rows().row_count(), surface.details().vertices);
 }
 
 TEST(ScanLines, TooFarApartAreNamed) {

@@ -99,23 +99,6 @@ TEST(Normals, WithNoiseAreNoWorseThanNone) {
   }
 }
 
-/// Two jittered half planes that meet at the line u = 0, with an angle `fold` between their outward normals.
-Cloud roof(double fold) {
-  Cloud cloud;
-  std::mt19937 random(4);
-  std::uniform_real_distribution<double> jitter(0.1, 0.9);
-  constexpr int side = 50;
-  const double c = std::cos(fold / 2), s = std::sin(fold / 2);
-  for (int i = 0; i < side; ++i)
-    for (int j = 0; j < side; ++j) {
-      const double u = 2 * (i + jitter(random)) / side - 1, v = 2 * (j + jitter(random)) / side - 1;
-      cloud.plane.push_back({u, v});
-      cloud.points.push_back({u * c, v, -std::abs(u) * s});
-      cloud.normals.push_back({u < 0 ? -s : s, 0, c});
-    }
-  return cloud;
-}
-
 // Where planes meet at a right angle, the sign of a cosine is that of a rounded zero; beyond, it is that of the wrong side.
 TEST(Normals, AcrossSharpCreasesLieOnOneSide) {
   const Vec3 axis = normalized(Vec3{0.3, 0.5, 0.8});
@@ -126,7 +109,7 @@ TEST(Normals, AcrossSharpCreasesLieOnOneSide) {
   };
   constexpr Index source = 50 * 12 + 25;
   for (const double degrees : {60.0, 85.0, 90.0, 91.0, 100.0, 110.0}) {
-    const Cloud cloud = roof(degrees * std::numbers::pi / 180);
+    const Cloud cloud = folded_cloud(50, 2, degrees * std::numbers::pi / 180);
     const SolvedCloud solved(cloud.points, cloud.normals);
     EXPECT_EQ(solved.surface.details().turned, 0) << degrees;
     const RowLogMap map = solved.map(source),
@@ -135,12 +118,12 @@ TEST(Normals, AcrossSharpCreasesLieOnOneSide) {
     double worst = 0, mean = 0;
     for (std::size_t i = 0; i < cloud.plane.size(); ++i) {
       const double d = length(cloud.plane[i] - cloud.plane[source]);
-      const double error = std::abs(map.distance[i] - d) / std::max(d, 0.2);
+      const double error = std::abs(map.distance[i] - d) / std::max(d, 0.1);
       worst = std::max(worst, error);
       mean += error / static_cast<double>(cloud.plane.size());
-      ASSERT_NEAR(of_rotated.distance[i], map.distance[i], 1e-6) << degrees << ", row " << i;
-      ASSERT_NEAR(of_flipped.distance[i], map.distance[i], 1e-6) << degrees << ", row " << i;
     }
+    expect_near(of_rotated.distance, map.distance, 1e-6);
+    expect_near(of_flipped.distance, map.distance, 1e-6);
     EXPECT_LT(worst, 0.1) << degrees;
     EXPECT_LT(mean, 0.02) << degrees;
   }
@@ -178,27 +161,6 @@ TEST(Normals, ThatContradictThePointsAreCountedAndNamed) {
   EXPECT_EQ(contradicted(rounded), 0);
 }
 
-TEST(Normals, OfTwoSheetsOfAThinWallKeepThemApart) {
-  // Two parallel squares a tenth of the spacing apart, facing away from each other.
-  Cloud wall;
-  std::mt19937_64 random(3);
-  std::uniform_real_distribution<double> uniform(0.0, 1.0);
-  for (int i = 0; i < 2000; ++i) {
-    const double side = i % 2 ? 1.0 : -1.0;
-    wall.points.push_back({uniform(random), uniform(random), side * 0.001});
-    wall.normals.push_back({0, 0, side});
-  }
-  const SolvedCloud solved(wall.points, wall.normals);
-  EXPECT_TRUE(solved.surface.details().oriented);
-  EXPECT_GT(solved.surface.details().rejected_normals, 0);
-  EXPECT_EQ(solved.surface.details().components, 2);
-  const RowLogMap map = solved.map(0);
-  for (std::size_t i = 0; i < wall.points.size(); ++i) {
-    ASSERT_EQ(map.status[i], i % 2 ? Status::disconnected : Status::ok);
-    if (i % 2 == 0) ASSERT_NEAR(map.distance[i], norm(wall.points[i] - wall.points[0]), 1e-11);
-  }
-}
-
 TEST(Normals, OfAMoebiusBandMakeReflections) {
   const Cloud band = moebius_cloud(6000);
   const SolvedCloud solved(band.points);
@@ -208,7 +170,7 @@ TEST(Normals, OfAMoebiusBandMakeReflections) {
   for (Variant variant : all_variants) {
     const RowLogMap map = solved.map(0, variant);
     EXPECT_EQ(std::ranges::count(map.status, Status::ok), 6000);
-    // Half way around the band: the seam of the orientation is no wall.
+    // Halfway around the band: the seam of the orientation is no wall.
     EXPECT_GT(std::ranges::max(map.distance),
               2.4);  // measured 2.6 in both variants: less than pi, where two fronts meet
     EXPECT_LT(std::ranges::max(map.distance), 2.8);

@@ -1,4 +1,5 @@
-// Every neighbor search finds the distances that brute force finds.
+// The neighbor searches for clouds.
+#include "backends/neighbor_search_laws.hpp"
 #include "clouds.hpp"
 
 namespace ahm::test {
@@ -9,60 +10,18 @@ struct NamedSearch {
   pointcloud::NeighborSearchFactory make;
 };
 
-class Search : public testing::TestWithParam<NamedSearch> {
- protected:
-  void expect_brute_force_distances(const std::vector<Vec3>& points, std::size_t k) const {
-    const auto search = GetParam().make(points);
-    std::vector<Index> indices(k);
-    std::vector<double> squared(k);
-    for (std::size_t q = 0; q < points.size(); q += 7) {
-      const auto squared_distance = [&](const Vec3& p) { return dot(p - points[q], p - points[q]); };
-      std::vector<double> expected;
-      for (const Vec3& p : points) expected.push_back(squared_distance(p));
-      std::sort(expected.begin(), expected.end());
-      const Index found = search->nearest(points[q], indices, squared);
-      ASSERT_EQ(found, static_cast<Index>(std::min(k, points.size())));
-      for (Index r = 0; r < found; ++r) {
-        ASSERT_NEAR(squared[r], expected[r], 1e-15 * (1 + expected[r]));
-        ASSERT_NEAR(squared_distance(points[indices[r]]), squared[r], 1e-15 * (1 + squared[r]));
-      }
-    }
-  }
-};
+class Search : public testing::TestWithParam<NamedSearch> {};
 
 TEST_P(Search, FindsWhatBruteForceFinds) {
-  expect_brute_force_distances(random_sphere(2000).points, 31);
-  expect_brute_force_distances(flat_cloud(500).points, 8);
-  expect_brute_force_distances(random_sphere(20).points, 31);  // more than there are
+  expect_nearest(GetParam().make, random_sphere(2000).points, 31);
+  expect_nearest(GetParam().make, flat_cloud(500).points, 8);
+  expect_nearest(GetParam().make, random_sphere(20).points, 31);  // more than there are
   std::vector<Vec3> equal(300, Vec3{1, 2, 3});
   equal.push_back({1, 2, 4});
-  expect_brute_force_distances(equal, 10);
+  expect_nearest(GetParam().make, equal, 10);
 }
 
-TEST_P(Search, PrefersLowNumbersOfEquallyNearPoints) {
-  std::vector<Vec3> lattice;
-  for (int i = 0; i < 9; ++i)
-    for (int j = 0; j < 9; ++j)
-      for (int k = 0; k < 9; ++k) lattice.push_back({1.0 * i, 1.0 * j, 1.0 * k});
-  const auto search = GetParam().make(lattice);
-  std::vector<Index> indices(24);
-  std::vector<double> squared(24);
-  for (std::size_t q = 0; q < lattice.size(); q += 5) {
-    std::vector<std::pair<double, Index>> expected;
-    for (const Vec3& p : lattice)
-      expected.emplace_back(dot(p - lattice[q], p - lattice[q]), static_cast<Index>(expected.size()));
-    std::sort(expected.begin(), expected.end());
-    search->nearest(lattice[q], indices, squared);
-    for (std::size_t r = 0; r < indices.size(); ++r) ASSERT_EQ(indices[r], expected[r].second) << q << ", " << r;
-  }
-}
-
-TEST_P(Search, BuildsTheSameGraph) {
-  const Cloud sphere = random_sphere(3000);
-  const auto surface = PointCloudSurface::build(sphere.points, {}, {.search = GetParam().make}),
-             expected = PointCloudSurface::build(sphere.points);
-  EXPECT_EQ(surface.graph().data().neighbors, expected.graph().data().neighbors);
-}
+TEST_P(Search, PrefersLowNumbersOfEquallyNearPoints) { expect_low_numbers_first(GetParam().make, 1); }
 
 const NamedSearch libraries[] = {
     {"nanoflann", pointcloud::nanoflann_search},

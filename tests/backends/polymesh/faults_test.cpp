@@ -1,5 +1,6 @@
 // A bad polygon mesh leads to an error that names the fault, or to a map with a status per row. Faults that are found by the
 // code that triangle meshes use, too, are in ../trimesh/faults_test.cpp.
+#include <functional>
 #include <set>
 
 #include "ahm/error.hpp"
@@ -16,11 +17,7 @@ void add_rotated_face(Polygons& mesh) {
 }
 
 TEST(PolygonFaults, AreNamed) {
-  struct Case {
-    const char* text;
-    void (*damage)(Polygons&);
-  };
-  const Case cases[] = {
+  const std::pair<const char*, void (*)(Polygons&)> cases[] = {
       {"no vertices", [](Polygons& mesh) { mesh = {}; }},
       {"vertex 5", [](Polygons& mesh) { mesh.positions[5][1] = NAN; }},
       {"same place",
@@ -48,43 +45,26 @@ TEST(PolygonFaults, AreNamed) {
   EXPECT_THROW(build(cube_sphere(8), stopped), Cancelled);
 }
 
-TEST(PolygonFaults, OfSourcesAreRefused) {
-  const Polygons mesh = cube_sphere(3);
-  const auto surface = build(mesh);
-  const SurfacePoint points[] = {Row(-1),
-                                 Row(mesh.vertices()),
-                                 FacePoint{-1, {0.25, 0.25, 0.25, 0.25}},
-                                 FacePoint{mesh.faces(), {0.25, 0.25, 0.25, 0.25}},
-                                 FacePoint{0, {0.5, 0.25, 0.25}},
-                                 FacePoint{0, {0.5, 0.5, 0.5, 0}},
-                                 FacePoint{0, {0.5, 0.7, -0.2, 0}},
-                                 FacePoint{0, {NAN, 0.5, 0.5, 0}}};
-  for (const SurfacePoint& point : points) EXPECT_THROW(surface.source(point), InvalidArgument);
-  const Vec3 along_normal = mesh.positions[0];
-  for (const Vec3& axis : {along_normal, Vec3{0, 0, 0}}) EXPECT_THROW(surface.source(Row(0), axis), InvalidArgument);
+TEST(PolygonFaults, AFacePointNeedsAWeightForEachCorner) {
+  const auto surface = build(cube_sphere(3));
+  EXPECT_THROW(surface.source(FacePoint{0, {0.5, 0.25, 0.25}}), InvalidArgument);
+  EXPECT_NO_THROW(surface.source(FacePoint{0, {0.5, 0.25, 0.25, 0}}));
 }
 
 TEST(PolygonFaults, MeshesThatAreNoManifoldsAreSplit) {
-  const auto split = [](const Polygons& mesh) {
-    EXPECT_THROW(build(mesh), InvalidGeometry);
-    auto surface = build(mesh, {.non_manifold = NonManifold::split});
-    EXPECT_NO_THROW(validate(surface.graph()));
-    EXPECT_EQ(map_of(surface, Row(0)).status.size(), mesh.positions.size());
-    return surface;
-  };
   Polygons fin = quad_grid(3);
   fin.positions.push_back({0, 0, 9});
   fin.positions.push_back({1, 0, 9});
   fin.add({5, 6, fin.vertices() - 1, fin.vertices() - 2});
-  EXPECT_EQ(split(fin).details().topology.non_manifold_edges, 1);
-  const Polygons bow_tie{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {-1, 0, 0}, {-1, -1, 0}, {0, -1, 0}},
-                         {0, 4, 8},
-                         {0, 1, 2, 3, 0, 4, 5, 6},
-                         {}};
-  EXPECT_EQ(split(bow_tie).details().topology.components, 2);
+  EXPECT_THROW(build(fin), InvalidGeometry);
+  EXPECT_EQ(build(fin, {.non_manifold = NonManifold::split}).details().topology.non_manifold_edges, 1);
   // Two quads with the same four vertices in another order are no duplicates.
   const Polygons crossing{{{0, 0, 0}, {1, 0, 0.1}, {1, 1, 0}, {0, 1, 0.1}}, {0, 4, 8}, {0, 1, 2, 3, 0, 2, 1, 3}, {}};
-  EXPECT_NO_THROW(map_of(build(crossing, {.non_manifold = NonManifold::split}), Row(0)));
+  for (const Polygons& mesh : {fin, crossing}) {
+    const auto surface = build(mesh, {.non_manifold = NonManifold::split});
+    EXPECT_NO_THROW(validate(surface.graph()));
+    EXPECT_EQ(map_of(surface, Row(0)).status.size(), mesh.positions.size());
+  }
 }
 
 TEST(PolygonFaults, UnreferencedVerticesAndOtherComponentsAreMasked) {
@@ -142,9 +122,7 @@ TEST(PolygonSymmetry, TheMapScalesAndMoves) {
   const auto map_after = [&](double scale, const Vec3& shift) {
     Polygons other = mesh;
     for (Vec3& p : other.positions) p = scale * p + shift;
-    RowLogMap map = map_of(build(other), Row(9));
-    for (double& distance : map.distance) distance /= scale;
-    return map;
+    return scaled(1 / scale, map_of(build(other), Row(9)));
   };
   for (double scale : {1e-300, 1e-12, 1e12, 1e300})
     expect_plane_distances(map_after(scale, {0, 0, 0}), mesh.plane, 9, 1e-11);
@@ -170,12 +148,9 @@ TEST(PolygonSymmetry, AComponentHasTheSameNumbersNextToOthers) {
           both.add(face);
         }
         const RowLogMap together = map_of(build(both, how), Row(5));
-        for (Index i = 0; i < a.vertices(); ++i) {
-          ASSERT_NEAR(together.u[i], alone.u[i], 1e-10) << scale;
-          ASSERT_NEAR(together.v[i], alone.v[i], 1e-10) << scale;
-          ASSERT_NEAR(together.distance[i], alone.distance[i], 1e-10) << scale;
-          ASSERT_NEAR(together.spread[i], alone.spread[i], 1e-5) << scale;
-        }
+        SCOPED_TRACE(scale);
+        expect_same_rows(alone, together, 1e-10, std::identity{});
+        expect_near(together.spread, alone.spread, 1e-5);
       }
     }
 }

@@ -81,12 +81,6 @@ TEST(PolygonLaplacian, IsTheCotanLaplacianOnTriangles) {
     }
 }
 
-TEST(PolygonLaplacian, HasTheMapOfTheTriangleBackendOnThePlane) {
-  const Polygons mesh = quad_grid(20, true);
-  const Vec3 axis{1, 0.2, 0};
-  EXPECT_LT(largest_difference(map_of(build(mesh), Row(200), axis), map_of(as_triangles(mesh), Row(200), axis)), 1e-11);
-}
-
 /// Expects that a flat mesh refines without folds to triangles with exact distances.
 polymesh::Refinement expect_flat_refinement(const Polygons& mesh) {
   const auto result = refined(mesh);

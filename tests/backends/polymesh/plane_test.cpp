@@ -10,12 +10,7 @@
 namespace ahm::test {
 namespace {
 
-struct FlatCase {
-  const char* name;
-  Polygons mesh;
-};
-
-std::vector<FlatCase> flat_cases() {
+std::vector<std::pair<std::string, Polygons>> flat_cases() {
   return {{"Voronoi cells", voronoi_square(300)},
           {"L shapes", l_shapes(10)},
           {"stretched L shapes", l_shapes(10, 30.0)},
@@ -56,12 +51,12 @@ TEST(PolygonPlane, IsTheIdentityFromAVertex) {
 }
 
 TEST(PolygonPlane, IsTheIdentityFromInsideAFace) {
-  std::vector<FlatCase> cases = flat_cases();
+  auto cases = flat_cases();
   cases.push_back({"reversed", voronoi_square(80)});
-  for (Index f = 0; f < cases.back().mesh.faces(); f += 3) cases.back().mesh.reverse(f);
+  for (Index f = 0; f < cases.back().second.faces(); f += 3) cases.back().second.reverse(f);
   for (const auto& [name, mesh] : cases) {
     const auto surface = build(mesh);
-    EXPECT_EQ(surface.details().topology.reoriented > 0, name == std::string("reversed"));
+    EXPECT_EQ(surface.details().topology.reoriented > 0, name == "reversed");
     EXPECT_TRUE(surface.details().topology.orientable);
     const LogMapSolver solver(surface.graph());
     for (Index face : {0, 1, 2, 3, mesh.faces() / 3, mesh.faces() - 1}) {

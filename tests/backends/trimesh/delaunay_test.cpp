@@ -51,22 +51,6 @@ TEST(Flips, LeaveOnlyWeightsOfDelaunayEdges) {
   }
 }
 
-TEST(Flips, KeepFlatVerticesFlat) {
-  // In a flat graph one-rings have the lengths and angles of the plane.
-  const Mesh mesh = sliver_square(800);
-  const auto surface = build(mesh);
-  const double unit = surface.graph().length_unit();
-  for (Index i = 0; i < surface.graph().size(); ++i) {
-    const Star star = surface.graph().star(i);
-    for (std::size_t e = 1; e < star.degree(); ++e) {
-      const Vec2 p{star.log(e - 1)[0], star.log(e - 1)[1]}, q{star.log(e)[0], star.log(e)[1]};
-      const Vec2 &a = mesh.plane[i], &b = mesh.plane[star.neighbors[e - 1]], &c = mesh.plane[star.neighbors[e]];
-      EXPECT_NEAR(unit * length(p - q), length(b - c), 1e-11) << "vertex " << i;
-      EXPECT_NEAR(unit * length(p), length(b - a), 1e-12) << "vertex " << i;
-    }
-  }
-}
-
 TEST(Flips, AreFewAndTheirHistoryIsShallow) {
   for (Index side : {40, 80, 160}) {
     const Mesh mesh = holed_square(side);

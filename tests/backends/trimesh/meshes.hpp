@@ -28,6 +28,22 @@ inline Mesh at_plane(Mesh mesh) {
   return mesh;
 }
 
+/// Rings of vertices at position(ring, k), joined by quads that are all cut along the same diagonal.
+/// @param is_closed  whether the last ring is joined to the first
+template <class Position>
+Mesh tube(Index rings, Index around, bool is_closed, const Position& position) {
+  Mesh mesh;
+  for (Index i = 0; i < rings; ++i)
+    for (Index k = 0; k < around; ++k) {
+      mesh.positions.push_back(position(i, k));
+      if (!is_closed && i + 1 == rings) continue;
+      const Index here = i * around, above = (i + 1) % rings * around, next = (k + 1) % around;
+      mesh.faces.push_back({here + k, here + next, above + next});
+      mesh.faces.push_back({here + k, above + next, above + k});
+    }
+  return mesh;
+}
+
 /// The mesh described by its edge lengths.
 inline TriangleMesh without_positions(const Mesh& mesh) {
   std::vector<std::array<double, 3>> lengths;

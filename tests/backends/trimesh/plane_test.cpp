@@ -7,12 +7,7 @@
 namespace ahm::test {
 namespace {
 
-struct FlatCase {
-  const char* name;
-  Mesh mesh;
-};
-
-std::vector<FlatCase> flat_cases() {
+std::vector<std::pair<std::string, Mesh>> flat_cases() {
   return {{"slivers", sliver_square(600)},
           {"slivers 2", sliver_square(1500, 7)},
           {"holes", holed_square(40)},
@@ -33,7 +28,7 @@ TEST(MeshPlane, IsTheIdentityFromAnyPoint) {
   for (const auto& [name, mesh] : flat_cases())
     for (bool flips : {true, false})
       for (Variant variant : all_variants) {
-        SCOPED_TRACE(name + std::string(flips ? ", flipped, " : ", ") + std::string(to_string(variant)));
+        SCOPED_TRACE(name + (flips ? ", flipped, " : ", ") + std::string(to_string(variant)));
         const SolvedMesh solved(mesh, {.intrinsic_delaunay = flips});
         const double tolerance = 1e-11 * mesh.diameter();
         for (Index row : {0, 1, 3, mesh.vertices() / 2, mesh.vertices() - 1})
@@ -53,27 +48,12 @@ TEST(MeshPlane, IsTheIdentityFromAnyPoint) {
 
 TEST(MeshPlane, HasTheAxesOfTheFrame) {
   for (const auto& [name, mesh] : flat_cases()) {
-    if (name == std::string("folded")) continue;  // its faces are not in one plane
+    if (name == "folded") continue;  // its faces are not in one plane
     const SolvedMesh solved(mesh);
     for (Index source : {0, mesh.vertices() / 2}) {
-      const RowLogMap map = solved.map(Row(source));
       const Frame frame = *solved.surface.graph().frame(solved.surface.vertex(Row(source)).index);
-      for (Index i = 0; i < mesh.vertices(); ++i) {
-        const Vec3 offset = mesh.positions[i] - frame.origin;
-        ASSERT_NEAR(map.u[i], dot(frame.x, offset), 2e-10) << name;
-        ASSERT_NEAR(map.v[i], dot(frame.y, offset), 2e-10) << name;
-      }
+      EXPECT_LT(flat_error(solved.map(Row(source)), mesh.positions, frame.origin, frame.x, frame.y), 2e-10) << name;
     }
-  }
-}
-
-TEST(MeshPlane, IsTheIdentityForEveryDiffusionTime) {
-  const Mesh mesh = holed_square(25);
-  const auto surface = build(mesh);
-  for (double t_coef : {0.1, 1.0, 100.0}) {
-    const RowLogMap map =
-        surface.to_rows(LogMapSolver(surface.graph(), {.t_coef = t_coef}).solve(surface.source(Row(7)).source));
-    EXPECT_LT(PlaneErrors(mesh, map, mesh.plane[7]).coordinates, 1e-11) << t_coef;
   }
 }
 
@@ -140,10 +120,7 @@ TEST(ThinFaces, LeaveThePlaneExactFarFromTheOrigin) {
   const SolvedMesh solved(moved(mesh, 1e-3, {4, 4, 4}));  // rounding is 1e-12 of the mesh
   EXPECT_EQ(solved.surface.details().mollification, 0);
   for (const auto& [name, point, plane] : places(mesh)) {
-    RowLogMap map = solved.map(point);
-    for (auto* numbers : {&map.u, &map.v, &map.distance})
-      for (double& x : *numbers) x *= 1e3;
-    EXPECT_LT(PlaneErrors(mesh, map, plane).coordinates, 1e-6) << name;
+    EXPECT_LT(PlaneErrors(mesh, scaled(1e3, solved.map(point)), plane).coordinates, 1e-6) << name;
   }
 }
 

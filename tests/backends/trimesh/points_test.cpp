@@ -30,7 +30,7 @@ TEST(MeshSource, AtACornerOfAFaceIsNearlyThatAtTheVertex) {
   const SolvedMesh solved(mesh);
   const Vec3 up{0.2, 0.3, 1};
   const RowLogMap vertex = solved.map(Row(mesh.faces[50][1]), up), corner = solved.map(FacePoint{50, {0, 1, 0}}, up);
-  for (std::size_t i = 0; i < vertex.u.size(); ++i) ASSERT_NEAR(vertex.distance[i], corner.distance[i], 1e-11);
+  expect_near(corner.distance, vertex.distance, 1e-11);
   EXPECT_LT(largest_difference(vertex, corner), 0.1);  // frames of the face and of the vertex differ by curvature
 }
 
@@ -104,18 +104,12 @@ double largest_stretch(const Mesh& mesh, const std::vector<Vec2>& corners) {
 
 TEST(MeshSampling, CutsTheTextureOpenAlongTheCutLocus) {
   // An open cylinder: the cut locus of a point is the line opposite to it. Every face is nearly isometric on both sides of it.
-  Mesh mesh;
   const Index around = 60, rows = 40;
   const double step = 2 * std::numbers::pi / around;
-  for (Index i = 0; i < rows; ++i)
-    for (Index j = 0; j < around; ++j)
-      mesh.positions.push_back({i * step, std::cos((j + 0.3 * (i % 2)) * step), std::sin((j + 0.3 * (i % 2)) * step)});
-  for (Index i = 0; i + 1 < rows; ++i)
-    for (Index j = 0; j < around; ++j) {
-      const Index a = i * around + j, b = i * around + (j + 1) % around, c = a + around, d = b + around;
-      mesh.faces.push_back({a, b, d});
-      mesh.faces.push_back({a, d, c});
-    }
+  const Mesh mesh = tube(rows, around, false, [&](Index i, Index k) {
+    const double angle = (k + 0.3 * (i % 2)) * step;
+    return Vec3{i * step, std::cos(angle), std::sin(angle)};
+  });
   const SolvedMesh solved(mesh);
   const LogMap map = solved.solver.solve(solved.surface.source(Row((rows / 2) * around)).source);
   EXPECT_LE(largest_stretch(mesh, solved.surface.to_corners(map)), 1.6);

@@ -1,10 +1,12 @@
-// The graph of a grid: its finite volume Laplacian, and the arguments that it refuses.
+// Grids in two and three dimensions: refused arguments, the finite volume Laplacian, and the map, which is the position relative
+// to the source.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
 #include "ahm/error.hpp"
+#include "ahm/fields/vector_heat.hpp"
 #include "ahm/grid/grid_graph.hpp"
 #include "support/expect_error.hpp"
 
@@ -15,19 +17,16 @@ using grid::Grid;
 using grid::GridGraph;
 
 TEST(GridFaults, AreNamed) {
-  struct Case {
-    Grid grid;
-    const char* text;
-  };
-  std::vector<Case> cases{{{}, "0 axes"},
-                          {{.shape = {2, 2, 2, 2}, .spacing = {1, 1, 1, 1}}, "4 axes"},
-                          {{.shape = {2, 2}, .spacing = {1}}, "'spacing'"},
-                          {{.shape = {2, 2}, .spacing = {1, 1}, .origin = {0}}, "'origin'"},
-                          {{.shape = {5, 1}, .spacing = {1, 1}}, "axis 1: 1 is too few"},
-                          {{.shape = {5, -3}, .spacing = {1, 1}}, "axis 1: -3 is too few"},
-                          {{.shape = {5, 5}, .spacing = {1, 1}, .origin = {NAN, 0}}, "axis 0"},
-                          {{.shape = {3, 4}, .spacing = {1, 1}, .blocked = {0, 0, 1}}, "3 bytes, the grid has 6 cells"},
-                          {{.shape = {3, 2}, .spacing = {1, 1}, .blocked = {1, 1}}, "all 2 cells"}};
+  std::vector<std::pair<Grid, const char*>> cases{
+      {{}, "0 axes"},
+      {{.shape = {2, 2, 2, 2}, .spacing = {1, 1, 1, 1}}, "4 axes"},
+      {{.shape = {2, 2}, .spacing = {1}}, "'spacing'"},
+      {{.shape = {2, 2}, .spacing = {1, 1}, .origin = {0}}, "'origin'"},
+      {{.shape = {5, 1}, .spacing = {1, 1}}, "axis 1: 1 is too few"},
+      {{.shape = {5, -3}, .spacing = {1, 1}}, "axis 1: -3 is too few"},
+      {{.shape = {5, 5}, .spacing = {1, 1}, .origin = {NAN, 0}}, "axis 0"},
+      {{.shape = {3, 4}, .spacing = {1, 1}, .blocked = {0, 0, 1}}, "3 bytes, the grid has 6 cells"},
+      {{.shape = {3, 2}, .spacing = {1, 1}, .blocked = {1, 1}}, "all 2 cells"}};
   for (double spacing : {0.0, -1.0, static_cast<double>(NAN), static_cast<double>(INFINITY), 1e308})
     cases.push_back({{.shape = {5, 5}, .spacing = {1, spacing}}, "axis 1: spacing"});
   for (const auto& [grid, text] : cases) expect_error<InvalidGeometry>([&] { GridGraph{grid}; }, text);
@@ -112,6 +111,84 @@ TEST(GridEdges, AreCountedAndMeasured) {
   EXPECT_EQ(GridGraph({.shape = {40'000, 40'000}, .spacing = {1, 1}}).edge_count(), 4 * Offset{40'000} * 39'999);
   EXPECT_EQ(GridGraph({.shape = {1200, 1200, 1200}, .spacing = {1, 1, 1}}).edge_count(),
             6 * Offset{1200} * 1200 * 1199);
+}
+
+class GridMap : public testing::TestWithParam<Grid> {
+ protected:
+  GridMap() : grid(GetParam()), solver(grid), d(grid.dimension()) {
+    const double unit = grid.length_unit();
+    for (int a = 0; a < d; ++a) diameter += std::pow(at(grid.size() - 1)[a] / unit - at(0)[a] / unit, 2);
+    diameter = std::sqrt(diameter) * unit;
+  }
+  Vec3 at(Index i) const { return grid.position(Vertex(i)); }
+  /// A point of the box. The fractions are 0 at vertex 0 and 1 at the last vertex.
+  std::vector<double> point(const Vec3& fractions) const {
+    std::vector<double> p;
+    for (int a = 0; a < d; ++a) p.push_back(at(0)[a] + fractions[a] * (at(grid.size() - 1)[a] - at(0)[a]));
+    return p;
+  }
+  template <class Point>
+  void expect_identity(const LogMap& map, const Point& source) const {
+    for (Index i = 0; i < grid.size(); ++i) {
+      ASSERT_EQ(map.status(Vertex(i)), Status::ok);
+      for (int a = 0; a < d; ++a)
+        ASSERT_NEAR(map.coordinates(Vertex(i))[a], at(i)[a] - source[a], 1e-11 * diameter) << "vertex " << i;
+    }
+  }
+  GridGraph grid;
+  LogMapSolver solver;
+  int d;
+  double diameter = 0;
+};
+
+TEST_P(GridMap, IsTheIdentityFromEveryVertexAndPoint) {
+  for (Variant variant : all_variants) {
+    for (Index p : {Index{0}, grid.size() / 3, grid.size() / 2, grid.size() - 1})
+      expect_identity(solver.solve(Source::at_vertex(Vertex(p)), {.variant = variant}), at(p));
+    // In the middle, near and on the border, on a face of a cell, on a vertex.
+    for (const Vec3& fractions : {Vec3{0.53, 0.41, 0.37}, {0.001, 1, 0.5}, {0, 0.3, 0}, {1, 1, 1}}) {
+      const std::vector<double> p = point(fractions);
+      expect_identity(solver.solve(grid.source_at(p), {.variant = variant}), p);
+    }
+  }
+}
+
+TEST_P(GridMap, HasConstantTransportAndTheRadialFieldOfFlatSpace) {
+  const std::vector<double> vector{2.0, -1.5, 0.25};
+  const auto transported = transport_vectors(solver, std::array{Vertex{3}}, std::span(vector).first(d)),
+             frames = parallel_transport(solver, grid.source_at(point({0.4, 0.6, 0.1}))),
+             radial = radial_field(solver, Source::at_vertex(Vertex{3}));
+  for (Index i = 0; i < grid.size(); ++i) {
+    for (int a = 0; a < d; ++a) {
+      ASSERT_NEAR(transported.values[i * d + a], vector[a], 1e-11);
+      ASSERT_NEAR(radial.values[i * d + a], at(i)[a] - at(3)[a], 1e-11 * diameter);
+    }
+    for (int k = 0; k < d * d; ++k) ASSERT_NEAR(frames.values[i * d * d + k], k % (d + 1) == 0 ? 1.0 : 0.0, 1e-11);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Grids, GridMap,
+    testing::Values(Grid{.shape = {40, 25}, .spacing = {0.1, 0.1}},
+                    Grid{.shape = {25, 40}, .spacing = {0.02, 0.05}, .origin = {-3, 8}},
+                    Grid{.shape = {30, 30}, .spacing = {1e-200, 2e-200}},
+                    Grid{.shape = {2, 30}, .spacing = {1e150, 2e150}}, Grid{.shape = {9, 8, 7}, .spacing = {1, 1, 1}},
+                    Grid{.shape = {8, 2, 9}, .spacing = {0.3, 0.2, 0.1}, .origin = {0.1, 0.2, 0.3}}),
+    [](const auto& info) { return "grid" + std::to_string(info.index); });
+
+// Conjugate gradients solve the bands of volumes.
+TEST(GridMarch, IsTheIdentityInSpace) {
+  const GridGraph grid({.shape = {34, 28, 30}, .spacing = {1, 1.3, 0.8}});
+  const Vertex p = grid.vertex(std::array<Index, 3>{3, 14, 11});
+  const LogMapSolver solver(grid, {.strategy = Strategy::march});
+  for (Variant variant : all_variants) {
+    const LogMap map = solver.solve(Source::at_vertex(p), {.variant = variant});
+    EXPECT_GT(map.march().bands, 3);
+    for (Index i = 0; i < grid.size(); ++i)
+      for (int a = 0; a < 3; ++a)
+        ASSERT_NEAR(map.coordinates(Vertex(i))[a], grid.position(Vertex(i))[a] - grid.position(p)[a], 1e-11 * 50)
+            << "vertex " << i;
+  }
 }
 
 }  // namespace
