@@ -99,6 +99,23 @@ TEST(Normals, WithNoiseAreNoWorseThanNone) {
   }
 }
 
+/// Two jittered half planes that meet at the line u = 0, with an angle `fold` between their outward normals.
+Cloud roof(double fold) {
+  Cloud cloud;
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> jitter(0.1, 0.9);
+  constexpr int side = 50;
+  const double c = std::cos(fold / 2), s = std::sin(fold / 2);
+  for (int i = 0; i < side; ++i)
+    for (int j = 0; j < side; ++j) {
+      const double u = 2 * (i + jitter(random)) / side - 1, v = 2 * (j + jitter(random)) / side - 1;
+      cloud.plane.push_back({u, v});
+      cloud.points.push_back({u * c, v, -std::abs(u) * s});
+      cloud.normals.push_back({u < 0 ? -s : s, 0, c});
+    }
+  return cloud;
+}
+
 // Where planes meet at a right angle, the sign of a cosine is that of a rounded zero; beyond, it is that of the wrong side.
 TEST(Normals, AcrossSharpCreasesLieOnOneSide) {
   const Vec3 axis = normalized(Vec3{0.3, 0.5, 0.8});
@@ -109,7 +126,7 @@ TEST(Normals, AcrossSharpCreasesLieOnOneSide) {
   };
   constexpr Index source = 50 * 12 + 25;
   for (const double degrees : {60.0, 85.0, 90.0, 91.0, 100.0, 110.0}) {
-    const Cloud cloud = folded_cloud(50, 2, degrees * std::numbers::pi / 180);
+    const Cloud cloud = roof(degrees * std::numbers::pi / 180);
     const SolvedCloud solved(cloud.points, cloud.normals);
     EXPECT_EQ(solved.surface.details().turned, 0) << degrees;
     const RowLogMap map = solved.map(source),
@@ -118,7 +135,7 @@ TEST(Normals, AcrossSharpCreasesLieOnOneSide) {
     double worst = 0, mean = 0;
     for (std::size_t i = 0; i < cloud.plane.size(); ++i) {
       const double d = length(cloud.plane[i] - cloud.plane[source]);
-      const double error = std::abs(map.distance[i] - d) / std::max(d, 0.1);
+      const double error = std::abs(map.distance[i] - d) / std::max(d, 0.2);
       worst = std::max(worst, error);
       mean += error / static_cast<double>(cloud.plane.size());
     }
