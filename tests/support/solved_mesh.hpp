@@ -1,5 +1,5 @@
 /// \file
-/// A triangle mesh taken all the way to maps, and its maps beside the plane it was made from.
+/// A triangle mesh with its graph factored, and the errors of its maps against the plane it was made from.
 #pragma once
 
 #include "ahm/conformance/triangle_meshes.hpp"
@@ -8,7 +8,6 @@
 
 namespace ahm::test {
 
-/// Builds, factors and solves in one go.
 struct SolvedMesh {
   explicit SolvedMesh(const Mesh& mesh, const trimesh::MeshOptions& options = {})
       : surface(trimesh::TriangleMeshSurface::build(mesh.positions, mesh.faces, options)), solver(surface.graph()) {}
@@ -16,13 +15,19 @@ struct SolvedMesh {
   RowLogMap map(const Source& source, Variant variant = Variant::adaptive) const {
     return surface.to_rows(solver.solve(source, {.variant = variant}));
   }
+  RowLogMap map(const SurfacePoint& point, Variant variant = Variant::adaptive) const {
+    return map(surface.source(point).source, variant);
+  }
+  RowLogMap map(const SurfacePoint& point, const Vec3& axis, Variant variant = Variant::adaptive) const {
+    return map(surface.source(point, axis).source, variant);
+  }
 
   trimesh::TriangleMeshSurface surface;
   LogMapSolver solver;
 };
 
-/// Largest distance between the map and the plane seen from `origin` with unit axis `axis`; infinite unless all is
-/// mapped.
+/// Largest difference between (u, v) and the position in the plane relative to `origin`, with the unit axis `axis`. Infinite
+/// unless every row is mapped.
 inline double plane_error(const Mesh& mesh, const RowLogMap& map, const Vec2& origin, const Vec2& axis) {
   return plane_error(mesh.plane, map.u, map.v, origin, axis);
 }

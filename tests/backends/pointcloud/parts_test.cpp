@@ -1,24 +1,18 @@
-// A part of a cloud has the same map alone, among others and with its rows in another order, also where distances tie and
-// neighbours lie on a circle, as on lattices.
-#include <gtest/gtest.h>
+// A part of a cloud has the same map alone, among others and with its rows in another order. This includes lattices, where
+// distances tie and neighbors lie on a circle.
 
-#include <algorithm>
-#include <cmath>
-#include <numeric>
-#include <random>
-
-#include "ahm/util/vec.hpp"
-#include "solved_cloud.hpp"
+#include "clouds.hpp"
 
 namespace ahm::test {
 namespace {
 
-constexpr double spacing = 0.1;  // no power of two: equal distances of the lattice are so up to rounding only
+constexpr double lattice_spacing =
+    0.1;  // no power of two: equal distances of the lattice are equal only up to rounding
 
 std::vector<Vec3> flat_lattice(int side) {
   std::vector<Vec3> points;
   for (int i = 0; i < side; ++i)
-    for (int j = 0; j < side; ++j) points.push_back({spacing * i, spacing * j, 0});
+    for (int j = 0; j < side; ++j) points.push_back({lattice_spacing * i, lattice_spacing * j, 0});
   return points;
 }
 
@@ -29,114 +23,137 @@ std::vector<Vec3> cube_lattice(int side) {
     for (int j = 0; j <= side; ++j)
       for (int k = 0; k <= side; ++k)
         if (i % side == 0 || j % side == 0 || k % side == 0)
-          points.push_back({spacing * (i - 0.5 * side), spacing * (j - 0.5 * side), spacing * (k - 0.5 * side)});
+          points.push_back(lattice_spacing * Vec3{i - 0.5 * side, j - 0.5 * side, k - 0.5 * side});
   return points;
 }
 
-std::vector<Vec3> moved(std::vector<Vec3> points, const Vec3& by) {
-  for (Vec3& p : points) p = p + by;
-  return points;
-}
-
-struct Part {
-  const char* name;
-  std::vector<Vec3> points;
-};
-
-std::vector<Part> parts() {
-  return {{"flat lattice", flat_lattice(30)},
-          {"moved lattice", moved(flat_lattice(30), {200.3, -57.1, 3.7})},
-          {"cube", cube_lattice(14)},
-          {"even sphere", even_sphere(1000).points},
-          {"random sphere", random_sphere(1000).points}};
-}
-
-/// The part's rows in the file come in the order `rows`, from row `first` on.
-void expect_same_maps(const Part& part, const std::vector<Vec3>& file, Index first, const std::vector<Index>& rows,
-                      std::span<const Vec3> normals = {}, std::span<const Vec3> file_normals = {}) {
-  const Solved alone({part.points, {normals.begin(), normals.end()}}, !normals.empty()),
-      together({file, {file_normals.begin(), file_normals.end()}}, !normals.empty());
-  for (const Index source : {0, 317}) {
-    const auto at = static_cast<Index>(std::find(rows.begin(), rows.end(), source) - rows.begin());
-    const RowLogMap a = alone.map(source), b = together.map(first + at);
-    const double size = *std::max_element(a.distance.begin(), a.distance.end());
-    for (std::size_t r = 0; r < rows.size(); ++r) {
-      const std::size_t i = static_cast<std::size_t>(rows[r]), j = static_cast<std::size_t>(first) + r;
-      ASSERT_EQ(a.status[i], b.status[j]) << part.name;
-      ASSERT_NEAR(a.distance[i], b.distance[j], 1e-9 * size) << part.name << ", row " << i;
-      ASSERT_NEAR(a.u[i], b.u[j], 1e-9 * size) << part.name << ", row " << i;
-      ASSERT_NEAR(a.v[i], b.v[j], 1e-9 * size) << part.name << ", row " << i;
-    }
-  }
-}
-
-std::vector<Index> in_order(const Part& part) {
-  std::vector<Index> rows(part.points.size());
-  std::iota(rows.begin(), rows.end(), Index{0});
+std::vector<Index> numbers_from(Index first, std::size_t count) {
+  std::vector<Index> rows(count);
+  std::iota(rows.begin(), rows.end(), first);
   return rows;
 }
 
-TEST(Parts, HaveTheSameMapBesideOthers) {
-  std::vector<Vec3> random = random_sphere(700).points;
-  for (Vec3& p : random) p = 3.3 * p + Vec3{41.7, -13.1, 9.9};
-  for (const Part& part : parts()) {
-    std::vector<Vec3> file = random;
-    file.insert(file.end(), part.points.begin(), part.points.end());
-    expect_same_maps(part, file, 700, in_order(part));
+/// @param rows  row of each point of the part in the file
+void expect_same_maps(const SolvedCloud& part, const SolvedCloud& file, const std::vector<Index>& rows) {
+  for (const Index source : {0, 317}) {
+    const RowLogMap a = part.map(source), b = file.map(rows[source]);
+    expect_same_rows(a, b, 1e-9 * std::ranges::max(a.distance), [&](Index i) { return rows[i]; });
   }
 }
 
-TEST(Parts, HaveTheSameMapBesideTheirCopy) {
-  for (const Part& part : parts()) {
-    std::vector<Vec3> file = part.points;
-    for (const Vec3& p : part.points) file.push_back(p + Vec3{1000.3, 17.7, -333.3});
-    expect_same_maps(part, file, 0, in_order(part));
-  }
-}
-
-TEST(Parts, HaveTheSameMapWhateverTheOrderOfRows) {
+TEST(Parts, HaveTheSameMapNextToOthersAndInAnyOrder) {
   std::mt19937_64 random(5);
-  for (const Part& part : parts()) {
-    std::vector<Index> rows = in_order(part);
-    std::shuffle(rows.begin(), rows.end(), random);
-    std::vector<Vec3> file;
-    for (const Index row : rows) file.push_back(part.points[row]);
-    expect_same_maps(part, file, 0, rows);
+  const std::vector<Vec3> sphere = joined({}, scaled(3.3, random_sphere(700).points), {41.7, -13.1, 9.9});
+  const std::pair<const char*, std::vector<Vec3>> parts[] = {
+      {"flat lattice", flat_lattice(30)},
+      {"moved lattice", joined({}, flat_lattice(30), {200.3, -57.1, 3.7})},
+      {"cube", cube_lattice(14)},
+      {"even sphere", even_sphere(1000).points},
+      {"random sphere", random_sphere(1000).points}};
+  for (const auto& [name, points] : parts) {
+    SCOPED_TRACE(name);
+    const SolvedCloud alone(points);
+    expect_same_maps(alone, SolvedCloud(joined(sphere, points)), numbers_from(700, points.size()));
+    expect_same_maps(alone, SolvedCloud(joined(points, points, {1000.3, 17.7, -333.3})),
+                     numbers_from(0, points.size()));
+    std::vector<Index> order = numbers_from(0, points.size());
+    std::shuffle(order.begin(), order.end(), random);
+    std::vector<Vec3> shuffled(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) shuffled[order[i]] = points[i];
+    expect_same_maps(alone, SolvedCloud(shuffled), order);
   }
 }
 
-/// Two flat sheets, one close behind the other, with normals that point away from each other.
-Cloud thin_wall() {
-  Cloud wall;
+// Each part decides whether signs of normals separate sheets or are wrong.
+TEST(Parts, HaveTheirOwnThinWalls) {
+  Cloud wall;  // two flat sheets close to each other, with normals that point away from each other
   for (double side : {-1.0, 1.0})
     for (const Vec3& p : flat_lattice(24)) {
-      wall.points.push_back({p[0], p[1], 0.3 * side * spacing});
+      wall.points.push_back({p[0], p[1], 0.3 * side * lattice_spacing});
       wall.normals.push_back({0, 0, side});
     }
-  return wall;
-}
-
-// Whether signs of normals tell sheets apart or are wrong is asked of each part.
-TEST(Parts, HaveTheirOwnThinWalls) {
-  const Cloud wall = thin_wall();
   Cloud wrong = random_sphere(1500);
-  for (std::size_t i = 0; i < wrong.normals.size(); i += 2) wrong.normals[i] = -1.0 * wrong.normals[i];
-  Cloud file = wrong;
-  for (std::size_t i = 0; i < wall.points.size(); ++i) {
-    file.points.push_back(wall.points[i] + Vec3{50.3, 0, 0});
-    file.normals.push_back(wall.normals[i]);
-  }
-  expect_same_maps({"wrong signs", wrong.points}, file.points, 0, in_order({"", wrong.points}), wrong.normals,
-                   file.normals);
-  const Solved solved(file, true);
-  for (const Index side : {0, 576}) {
-    const RowLogMap map = solved.map(1500 + side);
+  for (std::size_t i = 0; i < wrong.normals.size(); i += 2) wrong.normals[i] = -wrong.normals[i];
+  const SolvedCloud file(joined(wrong.points, wall.points, {50.3, 0, 0}), joined(wrong.normals, wall.normals));
+  expect_same_maps(SolvedCloud(wrong.points, wrong.normals), file, numbers_from(0, 1500));
+  for (const Index source : {0, 576}) {
+    const RowLogMap map = file.map(1500 + source);
     for (Index i = 0; i < 1152; ++i) {
-      const bool same_sheet = (i < 576) == (side == 0);
+      const bool same_sheet = (i < 576) == (source == 0);
       ASSERT_EQ(map.status[1500 + i] == Status::ok, same_sheet);
-      if (same_sheet) ASSERT_NEAR(map.distance[1500 + i], norm(wall.points[i] - wall.points[side]), 1e-9);
+      if (same_sheet) ASSERT_NEAR(map.distance[1500 + i], norm(wall.points[i] - wall.points[source]), 1e-9);
     }
   }
+}
+
+TEST(Parts, HaveTheirOwnNoise) {
+  const Cloud clean = random_sphere(3000), noisy = with_noise(clean, sphere_spacing(3000));
+  const auto alone = PointCloudSurface::build(noisy.points),
+             together = PointCloudSurface::build(joined(noisy.points, clean.points, {100, 0, 0}));
+  ASSERT_GT(alone.details().smoothed, 2900);
+  EXPECT_EQ(together.details().smoothed, alone.details().smoothed);
+  EXPECT_NEAR(together.details().noise, alone.details().noise, 1e-12);
+  EXPECT_EQ(together.details().thick, alone.details().thick);
+  const auto normal = [](const PointCloudSurface& surface, Row row) {
+    return surface.graph().frame(surface.vertex(row).index)->normal;
+  };
+  for (Row row(0); row.index < 3000; ++row.index)
+    ASSERT_NEAR(std::abs(dot(normal(alone, row), normal(together, row))), 1, 1e-9);
+}
+
+TEST(Parts, HaveTheirOwnDistances) {
+  const Cloud clean = even_sphere(2000);
+  const std::vector<Vec3> large = scaled(30, with_noise(random_sphere(1000), 0.1).points);
+  const SolvedCloud alone(clean.points), together(joined(clean.points, large, {100, 0, 0}));
+  for (const Index source : {0, 700}) {
+    const RowLogMap a = alone.map(source), b = together.map(source);
+    for (Index i = 0; i < 2000; ++i) {
+      ASSERT_NEAR(a.distance[i], b.distance[i], 1e-9);
+      ASSERT_NEAR(std::hypot(a.u[i], a.v[i]), std::hypot(b.u[i], b.v[i]), 1e-9);
+    }
+  }
+}
+
+/// 30 points of a tilted rectangle with spacing 0.1, from `corner` on.
+std::vector<Vec3> island(const Vec3& corner, unsigned seed) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> jitter(-0.03, 0.03);
+  std::vector<Vec3> points;
+  for (int i = 0; i < 5; ++i)
+    for (int j = 0; j < 6; ++j) {
+      const double u = 0.1 * i + jitter(random), v = 0.1 * j + jitter(random);
+      points.push_back(corner + Vec3{0.8 * u, v, 0.6 * u});
+    }
+  return points;
+}
+
+// Points that are not joined to an island do not change its plane.
+TEST(Islands, KeepTheirPlanes) {
+  /// Distances in the flat part of the rows first, ..., first + count - 1 are those of space.
+  const auto expect_flat = [](const std::vector<Vec3>& points, const SolvedCloud& solved, Index first, Index count) {
+    const RowLogMap map = solved.map(first);
+    for (Index i = first; i < first + count; ++i) {
+      ASSERT_EQ(map.status[i], Status::ok);
+      ASSERT_NEAR(map.distance[i], norm(points[i] - points[first]), 1e-11);
+    }
+  };
+  // Far from a surface.
+  const std::vector<Vec3> with_sphere = joined(random_sphere(3000).points, island({16, 0, 0}, 1));
+  const SolvedCloud far(with_sphere);
+  EXPECT_EQ(far.surface.details().components, 2);
+  expect_flat(with_sphere, far, 3000, 30);
+  // Far from other islands.
+  std::vector<Vec3> four;
+  for (unsigned k = 0; k < 4; ++k) four = joined(four, island({15.0 * (k % 2), 15.0 * (k / 2), 3.0 * k}, 7 + k));
+  const SolvedCloud islands(four);
+  EXPECT_EQ(islands.surface.details().components, 4);
+  for (Index k = 0; k < 4; ++k) expect_flat(four, islands, 30 * k, 30);
+  // Denser than a volume of points next to it.
+  std::vector<Vec3> mixed = joined(island({0, 0, 0}, 3), island({0.4, 0, 0.3}, 3));
+  std::mt19937_64 random(8);
+  std::uniform_real_distribution<double> uniform(10, 30);
+  for (int i = 0; i < 60; ++i) mixed.push_back({uniform(random), uniform(random), uniform(random)});
+  expect_flat(mixed, SolvedCloud(mixed), 0, 60);
 }
 
 }  // namespace

@@ -1,27 +1,13 @@
-// On the plane the map is the identity, whatever the triangles.
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
-#include <random>
-#include <string>
-#include <vector>
-
-#include "ahm/conformance/vectors.hpp"
+// On the plane the map is the identity for any triangles, also for faces that are arbitrarily thin.
 #include "ahm/fields/vector_heat.hpp"
-#include "support/solved_mesh.hpp"
+#include "ahm/graph/validate.hpp"
+#include "ahm/maps/quality.hpp"
+#include "thin_meshes.hpp"
 
 namespace ahm::test {
 namespace {
 
-constexpr double tolerance = 1e-11;
-
-struct FlatCase {
-  std::string name;
-  Mesh mesh;
-};
-
-std::vector<FlatCase> flat_cases() {
+std::vector<std::pair<std::string, Mesh>> flat_cases() {
   return {{"slivers", sliver_square(600)},
           {"slivers 2", sliver_square(1500, 7)},
           {"holes", holed_square(40)},
@@ -30,128 +16,112 @@ std::vector<FlatCase> flat_cases() {
           {"folded", folded_strip(25)}};
 }
 
-/// The unit vector from one point of the plane to another.
-std::array<double, 2> direction(const std::array<double, 2>& a, const std::array<double, 2>& b) {
-  const double x = b[0] - a[0], y = b[1] - a[1], r = std::hypot(x, y);
-  return {x / r, y / r};
+/// Expects the identity from a point inside a face, whose u axis is the direction of the first side.
+void expect_identity_from_face(const Mesh& mesh, const RowLogMap& map, const FacePoint& point, double tolerance) {
+  const auto& [a, b, c] = mesh.faces[point.face];
+  EXPECT_LT(plane_error(mesh, map, plane_point(mesh, point), direction(mesh, a, b)), tolerance)
+      << "face " << point.face;
 }
 
-/// The map from a vertex against the plane, whose u axis is read off at the vertex farthest from the source.
-double vertex_error(const Mesh& mesh, const RowLogMap& map, Index source) {
-  std::size_t far = 0;
-  auto distance = [&](std::size_t i) {
-    return std::hypot(mesh.plane[i][0] - mesh.plane[source][0], mesh.plane[i][1] - mesh.plane[source][1]);
-  };
-  for (std::size_t i = 0; i < mesh.plane.size(); ++i)
-    if (distance(i) > distance(far)) far = i;
-  const auto there = direction(mesh.plane[source], mesh.plane[far]);
-  const double r = std::hypot(map.u[far], map.v[far]), c = map.u[far] / r, s = map.v[far] / r;
-  return plane_error(mesh, map, mesh.plane[source], {there[0] * c + there[1] * s, there[1] * c - there[0] * s});
-}
-
-// What is given at points goes to what is nearest to them. Along slivers on the boundary, which no flip removes, heat must not
-// run as if they had no length.
-TEST(MeshPlane, HeatDoesNotRunAlongSliversOnTheBoundary) {
-  const Index n = 41;
-  const Mesh mesh = dented_square(n);
-  const SolvedMesh solved(mesh);
-  EXPECT_LT(vertex_error(mesh, solved.map(Source::at_vertex(Vertex(3))), 3), tolerance * mesh.diameter());
-  const std::array given{Vertex(0), Vertex(n - 1)};
-  const VertexField field = extend_scalar(solved.solver, given, std::array{0.0, 1.0});
-  for (Index i = 0; i < mesh.vertices(); ++i) {
-    const double x = mesh.plane[i][0] - 0.5 * (n - 1);
-    const double nearer =
-        std::abs(std::hypot(x + 0.5 * (n - 1), mesh.plane[i][1]) - std::hypot(x - 0.5 * (n - 1), mesh.plane[i][1]));
-    if (nearer > 10) ASSERT_NEAR(field.values[i], x < 0 ? 0 : 1, 0.01) << "vertex " << i;
-  }
-}
-
-TEST(MeshPlane, IsTheIdentityFromAnyVertex) {
+TEST(MeshPlane, IsTheIdentityFromAnyPoint) {
+  std::mt19937_64 random(3);
   for (const auto& [name, mesh] : flat_cases())
-    for (bool flips : {true, false}) {
-      const SolvedMesh solved(mesh, {.intrinsic_delaunay = flips});
-      for (Index source : {0, 1, 3, mesh.vertices() / 2, mesh.vertices() - 1})
-        for (Variant variant : all_variants) {
-          const RowLogMap map = solved.map(solved.surface.source(Row(source)).source, variant);
-          EXPECT_LT(vertex_error(mesh, map, source), tolerance * mesh.diameter())
-              << name << (flips ? " flipped" : "") << ", vertex " << source << ", " << to_string(variant);
+    for (bool flips : {true, false})
+      for (Variant variant : all_variants) {
+        SCOPED_TRACE(name + (flips ? ", flipped, " : ", ") + std::string(to_string(variant)));
+        const SolvedMesh solved(mesh, {.intrinsic_delaunay = flips});
+        const double tolerance = 1e-11 * mesh.diameter();
+        for (Index row : {0, 1, 3, mesh.vertices() / 2, mesh.vertices() - 1})
+          EXPECT_LT(PlaneErrors(mesh, solved.map(Row(row), variant), mesh.plane[row]).coordinates, tolerance) << row;
+        for (int trial = 0; trial < 3; ++trial) {
+          const FacePoint point = random_point(mesh, random);
+          expect_identity_from_face(mesh, solved.map(point, variant), point, tolerance);
+          const auto& [a, b, c] = mesh.faces[point.face];
+          const double t = point.barycentric[0];
+          EXPECT_LT(plane_error(mesh, solved.map(EdgePoint{Row(c), Row(a), t}, variant),
+                                mesh.plane_point(point.face, {t, 0, 1 - t}), direction(mesh, c, a)),
+                    tolerance)
+              << "edge of face " << point.face;
         }
-    }
+      }
 }
 
-TEST(MeshPlane, PutsTheFrameWhereItSays) {
+TEST(MeshPlane, HasTheAxesOfTheFrame) {
   for (const auto& [name, mesh] : flat_cases()) {
     if (name == "folded") continue;  // its faces are not in one plane
     const SolvedMesh solved(mesh);
     for (Index source : {0, mesh.vertices() / 2}) {
-      const RowLogMap map = solved.map(solved.surface.source(Row(source)).source);
       const Frame frame = *solved.surface.graph().frame(solved.surface.vertex(Row(source)).index);
-      for (Index i = 0; i < mesh.vertices(); ++i) {
-        const Vec3& p = mesh.positions[i];
-        const Vec3 offset{p[0] - frame.origin[0], p[1] - frame.origin[1], p[2] - frame.origin[2]};
-        ASSERT_NEAR(map.u[i], dot(frame.x, offset), 2e-10) << name;
-        ASSERT_NEAR(map.v[i], dot(frame.y, offset), 2e-10) << name;
-      }
+      EXPECT_LT(flat_error(solved.map(Row(source)), mesh.positions, frame.origin, frame.x, frame.y), 2e-10) << name;
     }
-  }
-}
-
-TEST(MeshPlane, IsTheIdentityFromPointsInFacesAndOnEdges) {
-  std::mt19937_64 random(3);
-  std::uniform_real_distribution<double> uniform(0.0, 1.0);
-  for (const auto& [name, mesh] : flat_cases())
-    for (bool flips : {true, false}) {
-      const SolvedMesh solved(mesh, {.intrinsic_delaunay = flips});
-      for (int trial = 0; trial < 6; ++trial) {
-        const auto f = static_cast<Index>(random() % mesh.faces.size());
-        FacePoint point{f, {uniform(random), uniform(random), 0}};
-        if (point.barycentric[0] + point.barycentric[1] > 1)
-          for (int s : {0, 1}) point.barycentric[s] = 1 - point.barycentric[s];
-        point.barycentric[2] = 1 - point.barycentric[0] - point.barycentric[1];
-        const auto& [a, b, c] = mesh.faces[f];
-        const Variant variant = trial % 2 ? Variant::adaptive : Variant::localized;
-        EXPECT_LT(plane_error(mesh, solved.map(solved.surface.source(point).source, variant), plane_point(mesh, point),
-                              direction(mesh.plane[a], mesh.plane[b])),
-                  tolerance * mesh.diameter())
-            << name << (flips ? " flipped" : "") << ", face " << f;
-        const double t = uniform(random);
-        EXPECT_LT(plane_error(mesh, solved.map(solved.surface.source(EdgePoint{Row(c), Row(a), t}).source, variant),
-                              mesh.plane_point(f, {t, 0, 1 - t}), direction(mesh.plane[c], mesh.plane[a])),
-                  tolerance * mesh.diameter())
-            << name << (flips ? " flipped" : "") << ", edge of face " << f;
-      }
-    }
-}
-
-TEST(MeshPlane, HoldsForEveryDiffusionTime) {
-  const Mesh mesh = holed_square(25);
-  const auto surface = trimesh::TriangleMeshSurface::build(mesh.positions, mesh.faces);
-  for (double t_coef : {0.1, 1.0, 100.0}) {
-    const LogMapSolver solver(surface.graph(), {.t_coef = t_coef});
-    EXPECT_LT(vertex_error(mesh, surface.to_rows(solver.solve(surface.source(Row(7)).source)), 7), tolerance) << t_coef;
   }
 }
 
 TEST(MeshPlane, NeedsNoPositions) {
   const Mesh mesh = holed_square(30);
-  std::vector<std::array<double, 3>> lengths;
-  for (const auto& t : mesh.faces) {
-    lengths.emplace_back();
-    for (int s = 0; s < 3; ++s) {
-      const auto &a = mesh.plane[t[s]], &b = mesh.plane[t[(s + 1) % 3]];
-      lengths.back()[s] = std::hypot(a[0] - b[0], a[1] - b[1]);
-    }
-  }
-  const auto surface = trimesh::TriangleMeshSurface::build(
-      trimesh::TriangleMesh::from_edge_lengths(mesh.vertices(), mesh.faces, lengths));
+  const auto surface = TriangleMeshSurface::build(without_positions(mesh));
   EXPECT_FALSE(surface.graph().frame(0).has_value());
-  const LogMapSolver solver(surface.graph());
-  EXPECT_LT(vertex_error(mesh, surface.to_rows(solver.solve(surface.source(Row(7)).source)), 7), tolerance);
+  EXPECT_LT(PlaneErrors(mesh, map_of(surface, Row(7)), mesh.plane[7]).coordinates, 1e-11);
   const FacePoint point{11, {0.2, 0.3, 0.5}};
-  const auto map = surface.to_rows(solver.solve(surface.source(point).source));
-  EXPECT_LT(plane_error(mesh, map, plane_point(mesh, point),
-                        direction(mesh.plane[mesh.faces[11][0]], mesh.plane[mesh.faces[11][1]])),
-            tolerance);
+  expect_identity_from_face(mesh, map_of(surface, point), point, 1e-11);
+}
+
+// Values given at vertices extend to the nearest ones. No flip removes slivers on the boundary; heat must not diffuse along them
+// as if they had no length.
+TEST(MeshPlane, HeatDoesNotRunAlongSliversOnTheBoundary) {
+  const Index n = 41;
+  const Mesh mesh = dented_square(n);
+  const SolvedMesh solved(mesh);
+  EXPECT_LT(PlaneErrors(mesh, solved.map(Source::at_vertex(Vertex(3))), mesh.plane[3]).coordinates,
+            1e-11 * mesh.diameter());
+  const VertexField field = extend_scalar(solved.solver, std::array{Vertex(0), Vertex(n - 1)}, std::array{0.0, 1.0});
+  for (Index i = 0; i < mesh.vertices(); ++i) {
+    const double to_left = length(mesh.plane[i]), to_right = length(mesh.plane[i] - Vec2{n - 1.0, 0});
+    if (std::abs(to_left - to_right) > 10)
+      ASSERT_NEAR(field.values[i], to_left < to_right ? 0 : 1, 0.01) << "vertex " << i;
+  }
+}
+
+void expect_identity(const Mesh& mesh, bool flips) {
+  const SolvedMesh solved(mesh, {.intrinsic_delaunay = flips});
+  const CsrGraph& graph = solved.surface.graph();
+  EXPECT_EQ(solved.surface.details().mollification, 0);
+  EXPECT_FALSE(solved.surface.details().flips_stopped);
+  EXPECT_NO_THROW(validate(graph));
+  for (Variant variant : all_variants)
+    for (const auto& [name, point, plane] : places(mesh)) {
+      const LogMap map = solved.solver.solve(solved.surface.source(point).source, {.variant = variant});
+      const PlaneErrors errors(mesh, solved.surface.to_rows(map), plane);
+      EXPECT_LT(errors.coordinates, 1e-9 * mesh.diameter()) << name;
+      EXPECT_LT(errors.distance, 1e-9 * mesh.diameter()) << name;
+      // Without flips, the quality of long triangles is lower.
+      if (graph.is_delaunay()) EXPECT_GT(std::ranges::min(map_quality(graph, map)), 0.9) << name;
+    }
+}
+
+TEST(ThinFaces, LeaveThePlaneExact) {
+  for (bool tilted : {false, true}) {
+    for (double thinness : {1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 0.0}) {
+      SCOPED_TRACE(testing::Message() << "thinness " << thinness << ", tilted " << tilted);
+      expect_identity(thin_square(17, {thinness}, 12, tilted), true);
+    }
+    for (bool flips : {true, false})
+      for (unsigned seed : {1u, 2u}) {
+        SCOPED_TRACE(testing::Message() << "all degrees, tilted " << tilted << ", flips " << flips << ", seed "
+                                        << seed);
+        expect_identity(thin_square(19, {1e-3, 1e-5, 1e-7, 1e-9, 1e-10, 3e-11, 1e-11, 1e-12, 0.0}, 4, tilted, seed),
+                        flips);
+      }
+  }
+}
+
+TEST(ThinFaces, LeaveThePlaneExactFarFromTheOrigin) {
+  const Mesh mesh = thin_square(15, {1e-5, 0.0}, 8, true);
+  const SolvedMesh solved(moved(mesh, 1e-3, {4, 4, 4}));  // rounding is 1e-12 of the mesh
+  EXPECT_EQ(solved.surface.details().mollification, 0);
+  for (const auto& [name, point, plane] : places(mesh)) {
+    EXPECT_LT(PlaneErrors(mesh, scaled(1e3, solved.map(point)), plane).coordinates, 1e-6) << name;
+  }
 }
 
 }  // namespace
