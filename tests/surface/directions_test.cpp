@@ -172,20 +172,13 @@ TEST(Curvature, ChangesSignWithTheNormalAndScalesWithLength) {
 
 // ------------------------------------------------------------------------------------------------ normals
 
-TEST(SourceSideNormals, OfASphereAreOutward) {
-  const auto sphere = surface_of(icosphere(8));
-  const CsrGraph& graph = sphere.graph();
-  const LogMap map = LogMapSolver(graph).solve(Source::at_vertex(Vertex{5}), {.frames = true});
-  const std::vector<Vec3> normals = source_side_normals(graph, map);
-  for (Index i = 0; i < graph.size(); ++i) ASSERT_GT(dot(normals[i], graph.frame(i)->origin), 0.9) << "vertex " << i;
-}
-
 TEST(SourceSideNormals, OfAMoebiusBandChangeSideOnlyFarFromTheSource) {
   const auto band = surface_of(moebius_mesh(80, 6));
   const CsrGraph& graph = band.graph();
   const LogMap map = LogMapSolver(graph).solve(Source::at_vertex(Vertex{0}), {.frames = true});
   const std::vector<Vec3> normals = source_side_normals(graph, map);
   const auto is_near = [](Index i) { return std::min(i / 7, 80 - i / 7) <= 20; };  // within a quarter of the turn
+  EXPECT_GT(dot(normals[0], graph.frame(0)->normal), 0.9);
   int changes = 0;
   for (Index i = 0; i < graph.size(); ++i)
     for (Index j : graph.star(i).neighbors) {

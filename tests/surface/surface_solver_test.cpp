@@ -165,6 +165,17 @@ TEST(SurfaceSolver, MapsAreThoseOfTheSolversBelow) {
     }
     EXPECT_EQ(map.vertices.method(), solver.method());
     EXPECT_EQ(map.source.row, row);
+    const std::array sources{Location(0), Location(100), Location(Vec3{0, 0, 1})};
+    const std::vector<SurfaceLogMap> maps = solver.log_maps({0, Row(100), {0.0, 0.0, 1.0}});
+    ASSERT_EQ(maps.size(), sources.size());
+    for (std::size_t s = 0; s < maps.size(); ++s) {
+      const SurfaceLogMap one = solver.log_map(sources[s]);
+      ASSERT_EQ(maps[s].status, one.status);
+      for (std::size_t i = 0; i < one.u.size(); ++i) {
+        EXPECT_NEAR(maps[s].u[i], one.u[i], 1e-9);
+        EXPECT_NEAR(maps[s].v[i], one.v[i], 1e-9);
+      }
+    }
   }
 }
 
@@ -174,24 +185,6 @@ TEST(SurfaceSolver, ChoosesTheSuggestedMethod) {
   for (const Surface* surface : std::array<const Surface*, 2>{&mesh, &cloud}) {
     EXPECT_EQ(SurfaceSolver(*surface).method(), surface->suggested_method());
     EXPECT_EQ(log_map(*surface, 0).vertices.method(), surface->suggested_method());
-  }
-}
-
-TEST(SurfaceSolver, ManyMapsAreThoseOfOneSourceEach) {
-  const auto mesh = surface_of(split_icosphere(642));
-  const std::array sources{Location(0), Location(100), Location(Vec3{0, 0, 1})};
-  for (const MethodOptions& method : all_methods) {
-    const SurfaceSolver solver(mesh, method);
-    const std::vector<SurfaceLogMap> maps = solver.log_maps({0, Row(100), {0.0, 0.0, 1.0}});
-    ASSERT_EQ(maps.size(), 3U);
-    for (std::size_t k = 0; k < maps.size(); ++k) {
-      const SurfaceLogMap one = solver.log_map(sources[k]);
-      ASSERT_EQ(maps[k].status, one.status);
-      for (std::size_t i = 0; i < one.u.size(); ++i) {
-        EXPECT_NEAR(maps[k].u[i], one.u[i], 1e-9);
-        EXPECT_NEAR(maps[k].v[i], one.v[i], 1e-9);
-      }
-    }
   }
 }
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <deque>
 #include <functional>
-#include <map>
 #include <numbers>
 
 #include "ahm/conformance/paper_band.hpp"
@@ -15,7 +15,6 @@ namespace ahm::test {
 namespace {
 
 using exact::ExactMap;
-using exact::GeodesicPath;
 using exact::MeshPoint;
 using exact::PolyhedralSurface;
 using std::numbers::pi;
@@ -64,30 +63,27 @@ TEST(ExactMap, TargetsAreThoseOfThePlane) {
 /// Shortest paths in a flat mesh with holes: straight lines between vertices of the boundary that do not cross it.
 class VisibilityGraph {
  public:
-  VisibilityGraph(const Mesh& mesh, const PolyhedralSurface& surface) : mesh_(mesh) {
+  VisibilityGraph(const Mesh& mesh, const PolyhedralSurface& surface) : mesh_(mesh), bends_(mesh.plane.size(), false) {
     for (exact::Half h = 0; h < 3 * surface.face_count(); ++h)
-      if (surface.record(exact::next(h)).beyond_left < 0)  // side h is the left side of the next half-edge
-        sides_.push_back({surface.record(h).tail, surface.record(h).head});
+      if (surface.record(exact::next(h)).beyond_left < 0) {  // side h is the left side of the next half-edge
+        const auto [a, b] = sides_.emplace_back(std::array{surface.record(h).tail, surface.record(h).head});
+        bends_[a] = bends_[b] = true;
+      }
   }
 
-  std::vector<double> distances(Index source) const {  // Dijkstra's algorithm
-    const std::size_t n = mesh_.plane.size();
-    std::vector<double> d(n, HUGE_VAL);
-    std::vector<bool> done(n, false), bends(n, false);
-    for (const auto& [a, b] : sides_) bends[a] = bends[b] = true;
+  std::vector<double> distances(Index source) const {
+    std::vector<double> d(bends_.size(), HUGE_VAL);
     d[source] = 0;
-    for (;;) {
-      std::size_t next = n;
-      for (std::size_t v = 0; v < n; ++v)
-        if (!done[v] && d[v] < (next < n ? d[next] : HUGE_VAL)) next = v;
-      if (next == n) return d;
-      done[next] = true;
-      if (!bends[next] && static_cast<Index>(next) != source) continue;
-      const Vec2& p = mesh_.plane[next];
-      for (std::size_t v = 0; v < n; ++v)
-        if (const double through = d[next] + norm(mesh_.plane[v] - p); through < d[v] && is_visible(p, mesh_.plane[v]))
-          d[v] = through;
+    for (std::deque<Index> changed{source}; !changed.empty(); changed.pop_front()) {
+      const Vec2& p = mesh_.plane[changed.front()];
+      for (Index v = 0; v < mesh_.vertices(); ++v) {
+        const double through = d[changed.front()] + norm(mesh_.plane[v] - p);
+        if (!(through < d[v]) || !is_visible(p, mesh_.plane[v])) continue;
+        d[v] = through;
+        if (bends_[v]) changed.push_back(v);
+      }
     }
+    return d;
   }
 
  private:
@@ -109,6 +105,7 @@ class VisibilityGraph {
 
   const Mesh& mesh_;
   std::vector<std::array<Index, 2>> sides_;
+  std::vector<bool> bends_;
 };
 
 TEST(ExactMap, BendsAroundHolesAndCorners) {
@@ -213,28 +210,6 @@ TEST(ExactMap, CrossesTheGluedSidesOfOneTriangle) {
 
 // ------------------------------------------------------------------------------------------------ cubes
 
-/// The unit cube. Each side consists of parts x parts squares of two triangles.
-Mesh cube(Index parts) {
-  Mesh mesh;
-  std::map<Vec3, Index> numbers;
-  for (int axis = 0; axis < 3; ++axis)
-    for (const bool upper : {false, true})
-      for (Index i = 0; i < parts; ++i)
-        for (Index j = 0; j < parts; ++j) {
-          const auto corner = [&](Index a, Index b) {
-            Vec3 p;
-            p[axis] = upper, p[(axis + 1) % 3] = (i + a) / (1.0 * parts), p[(axis + 2) % 3] = (j + b) / (1.0 * parts);
-            const auto [at, is_new] = numbers.try_emplace(p, mesh.vertices());
-            if (is_new) mesh.positions.push_back(p);
-            return at->second;
-          };
-          const Index a = corner(0, 0), b = corner(1, 0), c = corner(1, 1), d = corner(0, 1);
-          mesh.faces.push_back(upper ? Triangle{a, b, c} : Triangle{a, c, b});
-          mesh.faces.push_back(upper ? Triangle{a, c, d} : Triangle{a, d, c});
-        }
-  return mesh;
-}
-
 /// The unit cube. Four of its sides are cut into needles that run across it: rows of vertices on a line, as in CAD meshes.
 Mesh needle_cube(Index strips) {
   const std::array<Vec2, 4> corner{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
@@ -306,21 +281,13 @@ class RollingCube {
 };
 
 TEST(ExactMap, AgreesWithTheRolledCube) {
-  const Mesh mesh = cube(5);
-  const Polyhedron solid(mesh);
-  RollingCube rolling;
-  for (Index source : {0, 3, 17, 40, 88})
-    expect_distances(solid, solid.map(source),
-                     [&](Index v) { return rolling.distance(mesh.positions[source], mesh.positions[v]); });
-  EXPECT_NEAR(rolling.distance({0, 0, 0}, {1, 1, 1}), std::sqrt(5.0), 1e-13);
-}
-
-TEST(ExactMap, AgreesWithTheRolledCubeInNeedles) {
-  for (Index strips : {7, 60}) {
+  EXPECT_NEAR(RollingCube().distance({0, 0, 0}, {1, 1, 1}), std::sqrt(5.0), 1e-13);
+  for (const auto& [strips, is_rotated] : {std::pair(7, false), {7, true}, {60, true}}) {
     const Mesh mesh = needle_cube(strips);
-    Mesh turned = mesh;
-    for (Vec3& p : turned.positions) p = rotated(p);
-    const Polyhedron solid(turned);
+    Mesh shown = mesh;
+    if (is_rotated)
+      for (Vec3& p : shown.positions) p = rotated(p);
+    const Polyhedron solid(shown);
     std::mt19937_64 random(6);
     exact::ExactOptions options;
     options.targets = random_points(solid.surface, 60, random);
@@ -338,15 +305,11 @@ TEST(ExactMap, AgreesWithTheRolledCubeInNeedles) {
       const MeshPoint source = trial < 4 ? solid.vertex(5 * trial + 1) : options.targets[trial];
       const ExactMap map = exact::exact_map(solid.surface, source, options);
       expect_distances(solid, map, [&](Index v) { return rolling.distance(on_cube(source), mesh.positions[v]); });
-      for (Index v = 0; v < map.size(); ++v) {
-        const GeodesicPath path = exact::path_to_vertex(solid.surface, map, Vertex(v));
-        EXPECT_NEAR(solid.length(path.points), path.length, 1e-12) << "vertex " << v;
-      }
+      for (Index v = 0; v < map.size(); ++v) solid.expect_length(exact::path_to_vertex(solid.surface, map, Vertex(v)));
       for (std::size_t k = 0; k < map.targets(); ++k) {
         EXPECT_NEAR(map.target_distance(k) * solid.mesh.length_unit(),
                     rolling.distance(on_cube(source), on_cube(options.targets[k])), 1e-12);
-        const GeodesicPath path = exact::path_to_target(solid.surface, map, k);
-        EXPECT_NEAR(solid.length(path.points), path.length, 1e-12) << "target " << k;
+        solid.expect_length(exact::path_to_target(solid.surface, map, k));
       }
     }
   }
@@ -366,10 +329,9 @@ TEST(ExactMap, HasPathsOfItsDistancesInNeedlesOfRoundedCoordinates) {
       SCOPED_TRACE(testing::Message() << strips << " strips, trial " << trial);
       const MeshPoint p = trial < 10 ? solid.vertex(trial) : random_point(solid.surface, random),
                       q = random_point(solid.surface, random);
-      const GeodesicPath there = exact::geodesic_path(solid.surface, p, q),
-                         back = exact::geodesic_path(solid.surface, q, p);
-      EXPECT_NEAR(there.length, back.length, 1e-12);
-      EXPECT_NEAR(solid.length(there.points), there.length, 1e-12);
+      const exact::GeodesicPath path = solid.path(p, q);
+      EXPECT_NEAR(path.length, solid.path(q, p).length, 1e-12);
+      solid.expect_length(path);
       const ExactMap map = exact::exact_map(solid.surface, p);
       for (Index v = 0; v < map.size(); ++v)
         EXPECT_NEAR(solid.length(exact::path_to_vertex(solid.surface, map, Vertex(v)).points), map.distance(Vertex(v)),

@@ -184,14 +184,19 @@ TEST(ExactTolerance, BoundsTheErrorsOfDistances) {
     std::mt19937_64 random(3);
     const std::vector<MeshPoint> sources{
         solid.vertex(mesh.vertices() / 3), {surface.face_count() / 3, {0.3, 0.7, 0}}, random_point(surface, random)};
-    ExactOptions options;
-    options.targets = random_points(surface, 100, random);
+    std::vector<MeshPoint> targets = random_points(surface, 100, random);
+    targets[0] = solid.vertex(11);
     for (const MeshPoint& source : sources) {
-      options.tolerance = 0;
-      const ExactMap exact = exact::exact_map(surface, source, options);
-      for (double tolerance : {0.1, 1e-2, 1e-3, 1e-5, 1e-9}) {
-        options.tolerance = tolerance;
-        EXPECT_LE(relative_error(exact::exact_map(surface, source, options), exact), tolerance + 1e-12);
+      const ExactMap exact = exact::exact_map(surface, source, {.targets = targets});
+      for (double tolerance : {0.1, 1e-2, 1e-3, 1e-5, 1e-9})
+        EXPECT_LE(
+            relative_error(exact::exact_map(surface, source, {.tolerance = tolerance, .targets = targets}), exact),
+            tolerance + 1e-12);
+      const ExactOptions few{.tolerance = 1e-3, .targets = {targets[0], targets[1]}, .only_targets = true};
+      const ExactMap part = exact::exact_map(surface, source, few);
+      for (std::size_t t = 0; t < 2; ++t) {
+        ASSERT_EQ(part.target_status(t), Status::ok);
+        EXPECT_NEAR(part.target_distance(t), exact.target_distance(t), 1e-3 * exact.target_distance(t));
       }
     }
     // From all sources at once: vertices between two sources may have either of them.
@@ -200,24 +205,6 @@ TEST(ExactTolerance, BoundsTheErrorsOfDistances) {
     EXPECT_LE(relative_error(map, exact), 1e-3);
     for (Vertex v(0); v.index < map.size(); ++v.index)
       EXPECT_LE(each[static_cast<std::size_t>(map.source(v))].distance(v), exact.distance(v) * (1 + 2e-3)) << v.index;
-  }
-}
-
-TEST(ExactTolerance, BoundsTheErrorsOfTargetsOnly) {
-  const Polyhedron solid(bumps(31));
-  std::mt19937_64 random(9);
-  for (int k = 0; k < 20; ++k) {
-    ExactOptions options;
-    options.targets = {random_point(solid.surface, random), solid.vertex(11 * k)};
-    options.only_targets = true;
-    const MeshPoint source = random_point(solid.surface, random);
-    const ExactMap exact = exact::exact_map(solid.surface, source, options);
-    options.tolerance = 1e-3;
-    const ExactMap map = exact::exact_map(solid.surface, source, options);
-    for (std::size_t t = 0; t < 2; ++t) {
-      ASSERT_EQ(map.target_status(t), Status::ok);
-      EXPECT_NEAR(map.target_distance(t), exact.target_distance(t), 1e-3 * exact.target_distance(t));
-    }
   }
 }
 

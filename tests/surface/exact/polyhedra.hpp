@@ -2,6 +2,8 @@
 /// Triangle meshes as polyhedral surfaces, points on them, and cones that unroll.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -33,6 +35,9 @@ struct Polyhedron {
   exact::ExactMap map(Index source, const exact::ExactOptions& options = {}) const {
     return exact::exact_map(surface, vertex(source), options);
   }
+  exact::GeodesicPath path(const exact::MeshPoint& from, const exact::MeshPoint& to) const {
+    return exact::geodesic_path(surface, from, to);
+  }
   Vec3 position(Index v) const { return mesh.position(Vertex(v)); }
   Vec3 position(const exact::MeshPoint& point) const {
     Vec3 sum{};
@@ -44,6 +49,11 @@ struct Polyhedron {
     double sum = 0;
     for (std::size_t k = 1; k < points.size(); ++k) sum += distance(position(points[k - 1]), position(points[k]));
     return sum;
+  }
+
+  /// Expects that the polygon through the points of a path has its length, in units of the surface.
+  void expect_length(const exact::GeodesicPath& path, double tolerance = 1e-12) const {
+    EXPECT_NEAR(length(path.points), path.length, tolerance);
   }
 
   trimesh::TriangleMesh mesh;
