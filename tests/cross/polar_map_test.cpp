@@ -20,8 +20,6 @@
 namespace ahm::test {
 namespace {
 
-Vec2 vector_at(const LogMap& map, Index v) { return {map.coordinates(Vertex(v))[0], map.coordinates(Vertex(v))[1]}; }
-
 /// Largest difference of two maps, relative to the largest distance. Infinite if their statuses differ.
 double relative_difference(const LogMap& a, const LogMap& b) {
   double largest = 0, farthest = 0;
@@ -72,20 +70,6 @@ TEST(PolarMap, IsExactOnPlanes) {
 }
 
 // ------------------------------------------------------------------------------------------------ symmetries
-
-TEST(PolarMap, RotatesWithTheUAxis) {
-  const auto surface = surface_of(torus(900));
-  const PolarMapSolver solver(surface, {.windows = 2000});
-  const Vec3 x{0, 0, 1}, y{0, 1, 0.2};
-  const LogMap a = solver.log_map(Row(10), x), b = solver.log_map(Row(10), y);
-  const Frame u = *surface.source(Row(10), x).frame, w = *surface.source(Row(10), y).frame;
-  const double c = dot(u.x, w.x), s = dot(u.y, w.x);
-  for (Index i = 0; i < a.size(); ++i) {
-    const auto [p, q] = vector_at(a, i);
-    EXPECT_NEAR(vector_at(b, i)[0], c * p + s * q, 1e-11);
-    EXPECT_NEAR(vector_at(b, i)[1], c * q - s * p, 1e-11);
-  }
-}
 
 RowLogMap rows_of(const Mesh& mesh, Index source, Offset windows) {
   const auto surface = surface_of(mesh);

@@ -1,4 +1,4 @@
-// Sources, samples, closest points and rows of every surface.
+// Sources, samples, closest points, rows and corners of every surface.
 #include "ahm/surface/surface.hpp"
 
 #include <gtest/gtest.h>
@@ -10,6 +10,7 @@
 #include "ahm/conformance/clouds.hpp"
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/pointcloud/point_cloud_surface.hpp"
+#include "ahm/surface/exact/exact_geodesics.hpp"
 #include "ahm/surface/surface_paths.hpp"
 #include "ahm/surface/surface_triangles.hpp"
 #include "ahm/util/vec.hpp"
@@ -63,20 +64,6 @@ TEST(Surface, AnEdgePointLiesOnTheEdgeAndItsUAxisPointsAlongIt) {
     EXPECT_NEAR(end.v, 0, 1e-10);
     EXPECT_THROW(surface.source(EdgePoint{Row(a), Row(a), 0.5}), InvalidArgument);
     EXPECT_THROW(surface.source(EdgePoint{Row(a), Row(b), 1.5}), InvalidArgument);
-  });
-}
-
-TEST(Surface, CornersHaveTheValuesOfTheirRowsOnAFlatMesh) {
-  Mesh mesh = holed_square(10);
-  for (std::size_t f = 0; f < mesh.faces.size(); f += 3) std::swap(mesh.faces[f][1], mesh.faces[f][2]);
-  for_each_surface(polygons(mesh), [&](const Surface& surface) {
-    const LogMap map = map_of(surface, surface.source(Row(5)));
-    const RowLogMap rows = surface.to_rows(map);
-    const std::vector<Vec2> corners = surface.to_corners(map);
-    for (std::size_t k = 0; k < corners.size(); ++k) {
-      const Index row = mesh.faces[k / 3][k % 3];
-      ASSERT_LT(norm(corners[k] - Vec2{rows.u[row], rows.v[row]}), 1e-9);
-    }
   });
 }
 
@@ -324,6 +311,128 @@ TEST(Surface, IsValidAfterAMove) {
   const TriangleMeshSurface second = std::move(first);
   EXPECT_EQ(second.closest_point({0, 0.3, 2}).position, before.position);
   EXPECT_EQ(second.to_rows(solver.solve(second.source(Row(4)).source)).status[0], Status::ok);
+}
+
+// ------------------------------------------------------------------------------------------------ corners
+
+constexpr double two_pi = 2 * std::numbers::pi;
+
+struct Corners {
+  Index cut = 0;       ///< corners whose values differ from those of their row
+  double stretch = 1;  ///< largest ratio of the length of a side in the map and in space, or its inverse
+  double change = 0;   ///< largest difference of distances from the first corner of a face in the map and in space
+
+  Corners(const Surface& surface, const LogMap& map) {
+    const RowLogMap rows = surface.to_rows(map);
+    const std::vector<Vec2> phi = surface.to_corners(map);
+    const FaceList faces = surface.faces();
+    for (std::size_t f = 0; f < faces.size(); ++f)
+      for (std::size_t c = 0; c < faces[f].size(); ++c) {
+        const auto begin = static_cast<std::size_t>(faces.begin[f]), next = (c + 1) % faces[f].size();
+        const auto in_map = [&](std::size_t a, std::size_t b) { return norm(phi[begin + a] - phi[begin + b]); };
+        const auto in_space = [&](std::size_t a, std::size_t b) {
+          return distance(surface.positions()[faces[f][a]], surface.positions()[faces[f][b]]);
+        };
+        const double ratio = in_map(c, next) / in_space(c, next);
+        EXPECT_FALSE(std::isnan(ratio)) << f;
+        stretch = std::max({stretch, ratio, 1 / ratio});
+        change = std::max(change, std::abs(in_map(0, c) - in_space(0, c)));
+        cut += !(norm(phi[begin + c] - Vec2{rows.u[faces[f][c]], rows.v[faces[f][c]]}) < 1e-12);
+      }
+  }
+};
+
+TEST(Corners, HaveTheValuesOfTheirRowsOnAFlatMesh) {
+  Mesh mesh = holed_square(10);
+  for (std::size_t f = 0; f < mesh.faces.size(); f += 3) std::swap(mesh.faces[f][1], mesh.faces[f][2]);
+  for_each_surface(polygons(mesh), [&](const Surface& surface) {
+    const LogMap map = map_of(surface, surface.source(Row(5)));
+    const RowLogMap rows = surface.to_rows(map);
+    const std::vector<Vec2> corners = surface.to_corners(map);
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+      const Index row = mesh.faces[k / 3][k % 3];
+      ASSERT_LT(norm(corners[k] - Vec2{rows.u[row], rows.v[row]}), 1e-9);
+    }
+  });
+}
+
+// The cut locus of a point of a cylinder is the opposite line. No face has corners on both sides of that line.
+TEST(Corners, AreCutAtTheCutLocus) {
+  const Index around = 60;
+  for (const auto& [rows, length] : {std::pair(21, 1), {11, 8}}) {  // length of the faces, relative to their width
+    SCOPED_TRACE(length);
+    const Polygons cylinder = quads(rows, around, Columns::closed, [&](Index i, Index j) {
+      return Vec3{length * two_pi / around * i, std::cos(two_pi * j / around), std::sin(two_pi * j / around)};
+    });
+    for_each_surface(cylinder, [&](const Surface& surface) {
+      const LogMap map = map_of(surface, surface.source(Row(rows / 2 * around)));
+      const Corners corners(surface, map);
+      EXPECT_LE(corners.change, 0.3);
+      EXPECT_GT(corners.cut, 0);
+      if (length > 1) return;
+      EXPECT_LT(corners.stretch, 1.6);
+      const RowLogMap by_row = surface.to_rows(map);
+      const std::vector<Vec2> phi = surface.to_corners(map);
+      for (std::size_t k = 0; k < phi.size(); ++k)  // only corners within four columns of that line may be cut
+        if (const Index row = surface.faces().vertices[k]; std::abs(row % around - around / 2) > 4)
+          EXPECT_EQ(phi[k], (Vec2{by_row.u[row], by_row.v[row]})) << row;
+    });
+  }
+}
+
+// A sphere with a hole around the antipode of the source, where the map stretches circles by r / sin r: 4.4.
+TEST(Corners, AreNotCutWhereTheMapIsSmooth) {
+  const Index rows = 60, around = 96;
+  const double from = 0.02, to = 2.55;
+  const Polygons sphere = quads(rows, around, Columns::closed, [=](Index i, Index j) {
+    const double r = from + (to - from) * i / (rows - 1), a = two_pi * j / around;
+    return Vec3{std::sin(r) * std::cos(a), std::sin(r) * std::sin(a), std::cos(r)};
+  });
+  for_each_surface(sphere, [&](const Surface& surface) {
+    const Corners corners(surface, map_of(surface, surface.source(Row(0))));
+    EXPECT_EQ(corners.cut, 0);
+    EXPECT_GT(corners.stretch, 2);
+  });
+}
+
+// A curved patch. Wide columns of faces alternate with narrow ones, of faces up to forty times as long as wide.
+TEST(Corners, OfThinFacesAreNotCut) {
+  const Polygons patch = quads(41, 81, Columns::open, [](Index i, Index j) {
+    const double x = 0.05 * i, y = 0.05 * (j / 2) + (j % 2 == 0 ? 0 : 0.00125 * (1 + (i * 7 + j * 3) % 5));
+    return Vec3{x, y, 0.4 * std::sin(2 * x) * std::cos(2 * y)};
+  });
+  for_each_surface(patch, [&](const Surface& surface) {
+    EXPECT_EQ(Corners(surface, map_of(surface, surface.source(Row(20 * 81 + 40)))).cut, 0);
+  });
+}
+
+// Every face of a cube is distorted. The faces at the source are kept, and the others are laid out next to them.
+TEST(Corners, OfACubeAreFinite) {
+  Polygons cube;
+  cube.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
+  for (const std::vector<Index>& face :
+       {std::vector<Index>{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}})
+    cube.add(face);
+  for_each_surface(cube, [&](const Surface& surface) {
+    for (Index row = 0; row < 8; ++row)
+      EXPECT_LT(Corners(surface, map_of(surface, surface.source(Row(row)))).stretch, 10) << row;
+  });
+}
+
+// The angle of the tip of this cone is 0.8 of the full angle. Behind it there is a wedge between the two sheets of the map.
+TEST(Corners, AreCutBehindATip) {
+  const Index rows = 30, around = 60;
+  Mesh mesh = triangles(quads(rows, around, Columns::closed, [=](Index i, Index j) {
+    const double r = 0.2 + 0.1 * i, a = two_pi * j / around;
+    return Vec3{0.8 * r * std::cos(a), 0.8 * r * std::sin(a), -0.6 * r};
+  }));
+  mesh.positions.push_back({0, 0, 0});
+  for (Index j = 0; j < around; ++j) mesh.faces.push_back({(j + 1) % around, j, rows * around});
+  const auto surface = surface_of(mesh);
+  const Corners corners(surface, ExactGeodesics(surface).log_map(Row(10 * around + 7)));
+  EXPECT_LT(corners.stretch, 1.6);
+  EXPECT_GT(corners.cut, 0);
+  EXPECT_LT(corners.cut, 6 * rows);
 }
 
 }  // namespace

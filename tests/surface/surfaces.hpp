@@ -3,12 +3,14 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "ahm/conformance/polygon_meshes.hpp"
 #include "ahm/conformance/triangle_meshes.hpp"
 #include "ahm/error.hpp"
+#include "ahm/maps/log_map.hpp"
 #include "ahm/polymesh/polygon_mesh_surface.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
 
@@ -61,6 +63,12 @@ inline void for_each_surface(const Polygons& mesh, const std::function<void(cons
   visit(surface_of(triangles(mesh)));
   visit(surface_of(mesh, polymesh::Discretization::polygons));
   visit(surface_of(mesh, polymesh::Discretization::refined));
+}
+
+/// Coordinates of a vertex.
+inline Vec2 vector_at(const LogMap& map, Index v) {
+  const std::span<const double> uv = map.coordinates(Vertex(v));
+  return {uv[0], uv[1]};
 }
 
 /// Identifier of the error that a call throws; "none" without one.

@@ -37,8 +37,6 @@ Sources sources_in(const Surface& surface) {
   return result;
 }
 
-Vec2 vector_at(const LogMap& map, Index v) { return {map.coordinates(Vertex(v))[0], map.coordinates(Vertex(v))[1]}; }
-
 double largest_difference(std::span<const double> a, std::span<const double> b) {
   EXPECT_EQ(a.size(), b.size());
   double largest = 0;
