@@ -34,8 +34,8 @@ TEST_F(Stroke, AlongALineOnAPlaneOfPointsIsThePlane) {
   expect_straight(rows, 0.21, 0.4);
   for (const Row& p : rows)
     EXPECT_NEAR(p["distance"], std::hypot(std::max({0.0, 0.21 - p["x"], p["x"] - 0.77}), p["y"] - 0.4), 1e-9);
-  EXPECT_EQ(json.at("untrusted"), std::ranges::count_if(rows, [](const Row& p) { return p["quality"] < 0.5; }));
-  EXPECT_LT(number(json, "/untrusted"), 9);
+  EXPECT_EQ(json.at("low_quality"), std::ranges::count_if(rows, [](const Row& p) { return p["quality"] < 0.5; }));
+  EXPECT_LT(number(json, "/low_quality"), 9);
   EXPECT_NEAR(number(json, "/curve/length"), 0.56, 1e-12);
   EXPECT_LT(number(json, "/curve/largest_gap"), 1e-12);
   EXPECT_TRUE(read_text("stroke.csv").starts_with("index,x,y,z,u,v,distance,status,quality,spread\n"));

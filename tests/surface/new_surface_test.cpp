@@ -1,36 +1,32 @@
-// A surface of one's own: a lattice of squares, in what it takes to write one.
+// A new kind of surface: a lattice of squares that implements only the required functions.
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "ahm/error.hpp"
 #include "ahm/graph/csr_graph.hpp"
 #include "ahm/graph/validate.hpp"
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/surface/surface.hpp"
+#include "surfaces.hpp"
 
 namespace ahm::test {
 namespace {
 
-/// side x side points one apart in the plane z = 0, joined to their neighbours in the four directions.
+/// side x side points with spacing 1 in the plane z = 0. Neighbors are in the four directions of the axes.
 class Lattice final : public Surface {
  public:
-  explicit Lattice(Index side) : rows_(side * side, side * side, pairs(side)), graph_(data(side)) {
-    for (Index y = 0; y < side; ++y)
-      for (Index x = 0; x < side; ++x) positions_.push_back({1.0 * x, 1.0 * y, 0});
-    for (Index y = 0; y + 1 < side; ++y)
-      for (Index x = 0; x + 1 < side; ++x) {
-        const Index i = y * side + x;
-        corners_.insert(corners_.end(), {i, i + 1, i + side + 1, i + side});
-        begin_.push_back(static_cast<Offset>(corners_.size()));
-      }
-  }
+  explicit Lattice(Index side)
+      : rows_(side * side, side * side, pairs(side)),
+        graph_(data(side)),
+        mesh_(quads(side, side, Columns::open, [](Index y, Index x) {
+          return Vec3{1.0 * x, 1.0 * y, 0};
+        })) {}
 
   const TangentGraph& graph() const& override { return graph_; }
   const RowMap& rows() const override { return rows_; }
-  std::span<const Vec3> positions() const override { return positions_; }
-  FaceList faces() const override { return {begin_, corners_}; }
-  std::span<const Index> corner_vertices() const override { return corners_; }
+  std::span<const Vec3> positions() const override { return mesh_.positions; }
+  FaceList faces() const override { return {mesh_.begin, mesh_.corners}; }
+  std::span<const Index> corner_vertices() const override { return mesh_.corners; }
   Report report() const override { return {{"vertices", std::int64_t{graph_.size()}}}; }
   std::vector<Warning> warnings() const override { return {}; }
 
@@ -48,9 +44,9 @@ class Lattice final : public Surface {
       for (Index x = 0; x < side; ++x) {
         for (const auto& [dx, dy] : {std::pair{1, 0}, {0, 1}, {-1, 0}, {0, -1}}) {
           if (x + dx < 0 || x + dx >= side || y + dy < 0 || y + dy >= side) continue;
-          const bool on_border = dx == 0 ? x == 0 || x + 1 == side : y == 0 || y + 1 == side;
+          const bool on_boundary = dx == 0 ? x == 0 || x + 1 == side : y == 0 || y + 1 == side;
           g.neighbors.push_back((y + dy) * side + x + dx);
-          g.weights.push_back(on_border ? 0.5 : 1);
+          g.weights.push_back(on_boundary ? 0.5 : 1);
           g.logs.insert(g.logs.end(), {1.0 * dx, 1.0 * dy});
           g.transports.insert(g.transports.end(), {1, 0});
         }
@@ -63,12 +59,10 @@ class Lattice final : public Surface {
 
   RowMap rows_;
   CsrGraph graph_;
-  std::vector<Vec3> positions_;
-  std::vector<Offset> begin_{0};
-  std::vector<Index> corners_;
+  Polygons mesh_;
 };
 
-TEST(NewSurface, HasWhatTheBaseGivesToAll) {
+TEST(NewSurface, InheritsSourcesSamplesAndRows) {
   const Lattice lattice(12);
   EXPECT_NO_THROW(validate(lattice.graph()));
   const LogMap map =
@@ -95,7 +89,7 @@ TEST(NewSurface, HasWhatTheBaseGivesToAll) {
   const Sample origin = lattice.at(LogMapSolver(lattice.graph()).solve(between.source), Row(14));
   EXPECT_NEAR(origin.u, -0.25, 1e-10);
   EXPECT_NEAR(origin.v, -0.5, 1e-10);
-  EXPECT_THROW(lattice.source(FacePoint{0, {1, 0, 0, 0}}), InvalidArgument);  // it has not said how
+  EXPECT_THROW(lattice.source(FacePoint{0, {1, 0, 0, 0}}), InvalidArgument);  // not implemented
 }
 
 }  // namespace

@@ -94,7 +94,7 @@ TEST(GridObstacles, LowerTheQualityBehindThem) {
         if (const double q = quality[at(x, y).index]; y <= 10)
           EXPECT_NEAR(q, 1, 1e-9) << x << " " << y;
         else
-          EXPECT_LT(q, trusted_quality) << x << " " << y;
+          EXPECT_LT(q, reliable_quality) << x << " " << y;
   }
 }
 
@@ -157,7 +157,7 @@ TEST(GridObstacles, LowerTheQualityBehindThemInSpace) {
     if (b[0] <= wall.middle) EXPECT_NEAR(quality[i], 1, 1e-9) << i;
     if (wall.distance(a, b) < 1.2 * distance(a, b) + 2 * wall.h) continue;
     ++behind;
-    EXPECT_LT(quality[i], trusted_quality) << i;
+    EXPECT_LT(quality[i], reliable_quality) << i;
   }
   EXPECT_GT(behind, 400);
 }

@@ -285,7 +285,7 @@ TEST(Volumes, HaveNoVectorsOfGoodQualityThatAreTooShort) {
     if (map.status(Vertex(i)) != Status::ok || !(line > 0.2)) continue;
     if (!(length(map.coordinates(Vertex(i))) < 0.9 * line)) continue;
     ++too_short;
-    ASSERT_LE(quality[i], trusted_quality);
+    ASSERT_LE(quality[i], reliable_quality);
   }
   EXPECT_GT(too_short, 1000);
 }

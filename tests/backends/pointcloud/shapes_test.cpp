@@ -95,7 +95,7 @@ TEST(FlatCloud, HasLowQualityBehindAHole) {
     const Vec3& p = points[i];
     if (p[1] < 0.42) EXPECT_GT(quality[i], 0.99) << p[0] << ", " << p[1];
     if (p[1] < 0.6 || std::abs(p[0] - 0.5) > 0.15) continue;
-    EXPECT_LT(quality[i], trusted_quality) << p[0] << ", " << p[1];
+    EXPECT_LT(quality[i], reliable_quality) << p[0] << ", " << p[1];
     ++behind;
   }
   EXPECT_GT(behind, 300);
@@ -260,7 +260,7 @@ struct SteppedSphere {
     const std::vector<double> quality = to_rows(rows, map_quality(solved.surface.graph(), map));
     total = static_cast<int>(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
-      if (i == source || !(quality[i] >= trusted_quality)) continue;
+      if (i == source || !(quality[i] >= reliable_quality)) continue;
       ++good;
       const Vec2 along{dot(points[i], placed.frame->x), dot(points[i], placed.frame->y)};
       const Vec2 exact = sphere_distance(points[i], points[source]) / length(along) * along;

@@ -101,7 +101,7 @@ TEST(PolygonPlane, HasLowQualityBehindASlot) {
       ++before;
     }
     if (p[0] > 0.6 && length(end) + length(p - end) > 1.3 * length(p)) {
-      EXPECT_LT(q, trusted_quality) << i;
+      EXPECT_LT(q, reliable_quality) << i;
       ++behind;
     }
   }
