@@ -42,11 +42,11 @@ void expect_doubt_where_it_tears(const Surface& surface, const RowLogMap& rows, 
   for (std::size_t r = 0; r < quality.size(); ++r) {
     const Vec3& p = surface.positions()[r];
     const double x = p[0] - 0.5, y = p[1] - 0.5, from_middle = std::hypot(x, y);
-    if (from_middle < edge) EXPECT_LT(quality[r], reliable_quality) << p[0] << ' ' << p[1];
-    if (x > 0.1 && x < 0.4 && std::abs(y) < 0.3 * edge) EXPECT_LT(quality[r], reliable_quality) << p[0] << ' ' << p[1];
+    if (from_middle < edge) EXPECT_LT(quality[r], trusted_quality) << p[0] << ' ' << p[1];
+    if (x > 0.1 && x < 0.4 && std::abs(y) < 0.3 * edge) EXPECT_LT(quality[r], trusted_quality) << p[0] << ' ' << p[1];
     if (std::abs(from_middle - 0.3) > 0.1 || (x > 0 && std::abs(y) < 0.1)) continue;
     ++beside;
-    trusted += quality[r] > reliable_quality;
+    trusted += quality[r] > trusted_quality;
     EXPECT_NEAR(rows.distance[r], std::abs(from_middle - 0.3), edge);
   }
   EXPECT_GT(trusted, 0.8 * beside);
@@ -114,17 +114,17 @@ TEST(StrokeQuality, TellsRightRowsFromWrongOnes) {
     const RowLogMap rows = rows_from_curve(surface, map, curve);
     const std::vector<double> quality = to_rows(rows, map_quality(surface.graph(), map));
     const double side = dot(curve.first->normal, drawn.first->normal) > 0 ? 1 : -1, edge = edge_of(surface);
-    int trusted = 0, right = 0, right_and_reliable = 0;
+    int trusted = 0, right = 0, right_and_trusted = 0;
     for (std::size_t r = 0; r < quality.size(); ++r) {
       const double error = std::hypot(rows.u[r] - exact.u[r], rows.v[r] - side * exact.v[r]);
       const bool is_right = error < std::max(0.1 * exact.distance[r], edge);
       right += is_right;
-      trusted += quality[r] > reliable_quality;
-      right_and_reliable += is_right && quality[r] > reliable_quality;
+      trusted += quality[r] > trusted_quality;
+      right_and_trusted += is_right && quality[r] > trusted_quality;
     }
     EXPECT_LT(right, 0.9 * static_cast<double>(quality.size()));  // else there is nothing to tell
-    EXPECT_GT(right_and_reliable, 0.95 * trusted);
-    EXPECT_GT(right_and_reliable, 0.75 * right);
+    EXPECT_GT(right_and_trusted, 0.95 * trusted);
+    EXPECT_GT(right_and_trusted, 0.75 * right);
   });
 }
 

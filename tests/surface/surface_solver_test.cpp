@@ -125,7 +125,7 @@ TEST(RowLocalMaps, OfTheNearestAreTheFirstOfALargeRadius) {
   const auto cloud = noisy_sphere();
   const std::vector<Vertex> sources = sources_on(cloud);
   const RowLocalMaps all = row_local_maps(cloud, sources, {.radius = 2 * local_radius}),
-                     nearest = row_local_maps(cloud, sources, {.nearest = 40});
+                     nearest = row_local_maps(cloud, sources, {.k = 40});
   for (std::size_t s = 0; s < sources.size(); ++s) {
     ASSERT_EQ(nearest.indptr[s + 1] - nearest.indptr[s], 40);
     for (Offset k = 0; k < 40; ++k)

@@ -118,7 +118,7 @@ TEST(LocalMaps, KeepTheNearest) {
   const CsrGraph graph(flat.data);
   const std::vector<Vertex> sources = every(50, graph);
   const LocalMaps all = local_maps(graph, sources, {.radius = 0.2}),
-                  few = local_maps(graph, sources, {.radius = 0.2, .k = 9});
+                  few = local_maps(graph, sources, {.radius = 0.2, .nearest = 9});
   for (std::size_t s = 0; s < sources.size(); ++s) {
     ASSERT_EQ(few.indptr[s + 1] - few.indptr[s], 9);
     for (Offset k = 0; k < 9; ++k) ASSERT_EQ(few.neighbors[few.indptr[s] + k], all.neighbors[all.indptr[s] + k]);
@@ -170,9 +170,9 @@ TEST(LocalMaps, RefuseWhatFillsTheMemory) {
   LocalMapOptions options{.radius = 10, .memory = 10'000'000};
   EXPECT_THROW(local_maps(graph, options), ResourceExhausted);  // 2000 x 2000 entries
   EXPECT_EQ(local_maps(graph, every(100, graph), options).neighbors.size(), 20u * 2000u);
-  options.k = 9;
+  options.nearest = 9;
   EXPECT_EQ(local_maps(graph, options).neighbors.size(), 9u * 2000u);
-  options.k = 0;
+  options.nearest = 0;
   options.radius = 0.1;
   EXPECT_GT(local_maps(graph, options).neighbors.size(), 2000u);
 }
@@ -181,7 +181,7 @@ TEST(LocalMaps, RefuseNonsense) {
   const CsrGraph graph(sphere_graph(200));
   for (double radius : {0.0, -1.0, double(NAN), double(INFINITY)})
     EXPECT_THROW(local_maps(graph, {.radius = radius}), InvalidArgument);
-  EXPECT_THROW(local_maps(graph, {.radius = 1, .k = -1}), InvalidArgument);
+  EXPECT_THROW(local_maps(graph, {.radius = 1, .nearest = -1}), InvalidArgument);
   EXPECT_THROW(local_maps(graph, {.radius = 1, .heat = {.t_coef = 0}}), InvalidArgument);
   EXPECT_THROW(local_maps(graph, {.radius = 1, .margin = -1}), InvalidArgument);
   EXPECT_THROW(local_maps(graph, std::array{Vertex{200}}, {.radius = 1}), InvalidArgument);
@@ -199,8 +199,8 @@ TEST(LocalMaps, OfTheNearestAreThoseOfAWideRadius) {
     constexpr Index nearest = 25;
     const double radius = 8 * graph.mean_edge_length();
     const std::vector<Vertex> sources = every(11, graph);
-    const LocalMaps by_number = local_maps(graph, sources, {.k = nearest, .margin = 5}),
-                    by_radius = local_maps(graph, sources, {.radius = radius, .k = nearest, .margin = 5});
+    const LocalMaps by_number = local_maps(graph, sources, {.nearest = nearest, .margin = 5}),
+                    by_radius = local_maps(graph, sources, {.radius = radius, .nearest = nearest, .margin = 5});
     for (std::size_t s = 0; s < sources.size(); ++s) {
       ASSERT_EQ(by_number.indptr[s + 1] - by_number.indptr[s], nearest);
       // Distances alone: ties may be broken otherwise on a patch of another size.
@@ -216,7 +216,7 @@ TEST(LocalMaps, OfTheNearestHoldThemWhereNoRadiusWould) {
   for (std::size_t i = 0; i < mesh.positions.size(); ++i)
     mesh.positions[i] = {std::pow(1000.0, mesh.plane[i][0]), std::pow(1000.0, mesh.plane[i][1]), 0};
   const auto surface = trimesh::TriangleMeshSurface::build(mesh.positions, mesh.faces);
-  const LocalMaps maps = local_maps(surface.graph(), {.k = 12});
+  const LocalMaps maps = local_maps(surface.graph(), {.nearest = 12});
   for (std::size_t s = 0; s < mesh.positions.size(); ++s) {
     ASSERT_EQ(maps.indptr[s + 1] - maps.indptr[s], 12);
     std::vector<double> away;
@@ -230,7 +230,7 @@ TEST(LocalMaps, OfTheNearestHoldThemWhereNoRadiusWould) {
 
 TEST(LocalMaps, OfTheNearestEndWithTheComponent) {
   const CsrGraph graph(sphere_graph(30));
-  const LocalMaps maps = local_maps(graph, {.k = 50});
+  const LocalMaps maps = local_maps(graph, {.nearest = 50});
   for (std::size_t s = 0; s < 30; ++s) EXPECT_EQ(neighbors_of(maps, s).size(), 30U);
   EXPECT_THROW(local_maps(graph, LocalMapOptions{}), InvalidArgument);
 }

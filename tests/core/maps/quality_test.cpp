@@ -79,7 +79,7 @@ TEST(MapQuality, FindsTheCutLocus) {
   for (Index r = 0; r < rings; ++r) {
     // Around the tube the two ways to the line meet at an angle that closes with the distance along the tube.
     if (std::abs(r - 60) <= 15) {
-      EXPECT_LT(quality[r * around + around / 2], reliable_quality) << "ring " << r;
+      EXPECT_LT(quality[r * around + around / 2], trusted_quality) << "ring " << r;
     }
     EXPECT_GT(quality[r * around + around / 4], 0.99) << "ring " << r;
     EXPECT_GT(quality[r * around], 0.99) << "ring " << r;
