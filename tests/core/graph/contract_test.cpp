@@ -1,4 +1,4 @@
-// The contract suite on graphs that are given by hand, and the paper's operator on every kind of graph the core knows.
+// The contract suite, which includes the paper's operator, on every kind of graph of the core.
 #include "ahm/conformance/curved_graphs.hpp"
 #include "ahm/conformance/flat_graphs.hpp"
 #include "ahm/conformance/graph_changes.hpp"
