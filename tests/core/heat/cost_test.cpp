@@ -2,6 +2,7 @@
 #include "ahm/maps/cost.hpp"
 
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -17,29 +18,21 @@ namespace {
 namespace fs = std::filesystem;
 
 /// A tree of control groups.
-class Groups {
- public:
-  Groups() {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    root_ = fs::path(testing::TempDir()) / (std::string("ahm_groups_") + test->name());
-    fs::remove_all(root_);
-    fs::create_directories(root_);
-  }
-  ~Groups() { fs::remove_all(root_); }
+struct Groups {
+  Groups() { fs::remove_all(root); }
+  ~Groups() { fs::remove_all(root); }
   Groups(const Groups&) = delete;
 
   void write(const fs::path& name, const std::string& text) const {
-    fs::create_directories((root_ / name).parent_path());
-    std::ofstream(root_ / name) << text << '\n';
+    fs::create_directories((root / name).parent_path());
+    std::ofstream(root / name) << text << '\n';
   }
   /// Limit of a process in these groups.
   double limit(const std::string& lines) const {
     write("self", lines);
-    return control_group_limit(root_ / "self", root_ / "mounts");
+    return control_group_limit(root / "self", root / "mounts");
   }
-
- private:
-  fs::path root_;
+  const fs::path root = fs::path(testing::TempDir()) / ("ahm_groups_" + std::to_string(getpid()));
 };
 
 /// Lowers a limit of this process while it exists.

@@ -140,9 +140,8 @@ TEST_F(Batch, SolvesFromManyThreadsAtOnce) {
       });
   }
   EXPECT_EQ(same, calls);
+  EXPECT_TRUE(solver.solve(std::span<const Source>()).empty());
 }
-
-TEST_F(Batch, AcceptsNoSourcesAtAll) { EXPECT_TRUE(solver.solve(std::span<const Source>()).empty()); }
 
 TEST_F(Batch, ReportsProgressUpToTheEnd) {
   double last = -1;

@@ -30,10 +30,13 @@ TEST(March, AgreesWithTheGlobalSolve) {
     const SolvedGraph whole(data, global), march(data, marching);
     for (const Source& source : {source_at(5), blended(whole.graph)})
       for (Variant variant : all_variants) {
-        const LogMap map = march.map(source, {.variant = variant});
+        const MapOptions options{.variant = variant, .frames = true};
+        const LogMap expected = whole.map(source, options), map = march.map(source, options);
+        SCOPED_TRACE(std::to_string(map.march().bands) + " bands");
         EXPECT_EQ(map.strategy(), Strategy::march);
-        EXPECT_LT(difference(whole.map(source, {.variant = variant}), map), 1e-9)
-            << to_string(variant) << ", " << map.march().bands << " bands";
+        EXPECT_LT(difference(expected, map), 1e-9);
+        expect_near(map.distances(), expected.distances(), 1e-7);
+        expect_near(map.frames(), expected.frames(), 1e-6);
       }
   }
 }
@@ -243,7 +246,7 @@ TEST(March, TakesMemoryForReachedVerticesOnly) {
   EXPECT_LT(large, 1000 * 1000 * 2.0);
 }
 
-TEST(March, NumbersVerticesInTheOrderOfArrival) {
+TEST(March, NumbersVerticesInTheOrderOfArrivalAndReusesForgottenNumbers) {
   ReachedNumbers numbers(1'000'000);
   for (Index vertex : {5, 999'999, 6, 5}) numbers.number(vertex);
   EXPECT_EQ(numbers.count(), 3);
@@ -251,17 +254,15 @@ TEST(March, NumbersVerticesInTheOrderOfArrival) {
   EXPECT_EQ(numbers.find(999'999), 1);
   EXPECT_EQ(numbers.find(7), -1);
   EXPECT_EQ(numbers.find(500'000), -1);
-}
 
-TEST(March, ReusesTheNumbersOfForgottenVertices) {
-  ReachedNumbers numbers(600);
-  for (Index vertex = 0; vertex < 600; ++vertex) numbers.number(vertex);
-  const std::size_t before = numbers.bytes();
-  for (Index vertex = 256; vertex < 600; ++vertex) numbers.forget(vertex);
-  EXPECT_EQ(numbers.find(255), 255);
-  EXPECT_EQ(numbers.find(256), ReachedNumbers::forgotten);
-  EXPECT_EQ(numbers.find(599), ReachedNumbers::forgotten);
-  EXPECT_LT(numbers.bytes(), before + 344 * 2 * sizeof(Index) - 2 * 1024);
+  ReachedNumbers all(600);
+  for (Index vertex = 0; vertex < 600; ++vertex) all.number(vertex);
+  const std::size_t before = all.bytes();
+  for (Index vertex = 256; vertex < 600; ++vertex) all.forget(vertex);
+  EXPECT_EQ(all.find(255), 255);
+  EXPECT_EQ(all.find(256), ReachedNumbers::forgotten);
+  EXPECT_EQ(all.find(599), ReachedNumbers::forgotten);
+  EXPECT_LT(all.bytes(), before + 344 * 2 * sizeof(Index) - 2 * 1024);
 
   ReachedNumbers few(600);
   few.number(3), few.number(4);

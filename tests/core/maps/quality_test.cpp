@@ -13,12 +13,6 @@ TEST(MapFrames, AreTheParallelTransportOfTheSourcesAxes) {
   EXPECT_TRUE(sphere.map(0).frames().empty());
 }
 
-TEST(MapFrames, AreTheSameByMarch) {
-  for (const CsrGraphData& data : {sphere_graph(6000), as_blocks(sphere_graph(3000)), bent_lattice(12)})
-    expect_near(SolvedGraph(data, {.strategy = Strategy::march}).map(5, {.frames = true}).frames(),
-                SolvedGraph(data, {.strategy = Strategy::global}).map(5, {.frames = true}).frames(), 1e-6);
-}
-
 TEST(MapQuality, IsOneOnFlatGraphs) {
   for (const FlatGraph& flat : {planar_triangulation(40), lattice3(9), mirrored_plane(20)}) {
     const SolvedGraph solved(flat.data);

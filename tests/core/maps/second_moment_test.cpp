@@ -9,21 +9,6 @@
 namespace ahm::test {
 namespace {
 
-// Any triangulation, any weights, both arithmetic paths, one to three dimensions.
-TEST(SecondMoment, IsTheDistanceOnFlatGraphs) {
-  for (const FlatGraph& flat : {planar_triangulation(30), mirrored_plane(20), line_graph(200), lattice3(9)})
-    for (Strategy strategy : strategies)
-      for (Variant variant : all_variants) {
-        const SolvedGraph solved(flat.data, {.variant = variant, .strategy = strategy});
-        ASSERT_FALSE(solved.graph.is_delaunay());
-        const LogMap map = solved.map(33);
-        for (Index i = 0; i < flat.size(); ++i) {
-          ASSERT_NEAR(map.distance(Vertex(i)), length(flat.exact(33, i)), 1e-11 * flat.diameter());
-          ASSERT_LT(map.spread()[i], 1e-5 * flat.diameter());  // the root of a difference has half of the digits
-        }
-      }
-}
-
 // q / lambda >= |phi|^2 by Jensen's inequality.
 TEST(SecondMoment, HasAVarianceThatIsNotNegative) {
   for (const CsrGraphData& data : {sphere_graph(2500), as_blocks(sphere_graph(900)), bent_lattice(10), tube(60, 9)}) {
@@ -68,13 +53,6 @@ TEST(SecondMoment, IsAccurateOnTheWholeSphereAndConverges) {
     EXPECT_LT(coarse, 0.12);
     EXPECT_LT(fine, 0.5 * coarse);
   }
-}
-
-TEST(SecondMoment, IsTheSameByMarch) {
-  for (const CsrGraphData& data : {sphere_graph(6000), as_blocks(sphere_graph(3000)), bent_lattice(12)})
-    for (Variant variant : all_variants)
-      expect_near(SolvedGraph(data, {.variant = variant, .strategy = Strategy::march}).map(5).distances(),
-                  SolvedGraph(data, {.variant = variant, .strategy = Strategy::global}).map(5).distances(), 1e-7);
 }
 
 TEST(SecondMoment, SpreadsAcrossACutLocusOnly) {

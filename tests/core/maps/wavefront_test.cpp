@@ -108,45 +108,30 @@ TEST(Wavefront, FromPointsInOneFaceIsThatFromEach) {
   }
 }
 
-TEST(Wavefront, HasTheNearestOfManyPointsAddedAtOnceOrInTurn) {
-  const CsrGraph graph(tube(40, 12));
-  Wavefront at_once(graph), in_turn(graph);
-  std::vector<std::vector<double>> alone;
-  for (Index source : {5, 100, 301, 470}) {
-    at_once.add(source_at(source));
-    in_turn.add(source_at(source));
-    in_turn.run();
-    alone.push_back(distances(graph, source_at(source)));
-  }
-  at_once.run();
-  for (Index i = 0; i < graph.size(); ++i)
-    for (const Wavefront* front : {&at_once, &in_turn}) {
-      const double least = std::min({alone[0][i], alone[1][i], alone[2][i], alone[3][i]});
-      ASSERT_NEAR(front->distance(Vertex(i)), least, 1e-10) << "vertex " << i;
-      ASSERT_NEAR(alone[front->nearest(Vertex(i))][i], least, 1e-10) << "vertex " << i;
-    }
-}
-
 // More points near every vertex than a vertex stores.
-TEST(Wavefront, FromManyPointsInTurnIsThatFromTheNearest) {
+TEST(Wavefront, FromManyPointsAtOnceOrInTurnIsThatFromTheNearest) {
   const Index side = 24;
   for (const FlatGraph& flat : {planar_triangulation(side), lattice3(8)}) {
     const CsrGraph graph(flat.data);
-    Wavefront front(graph, nullptr, true);
+    Wavefront at_once(graph, nullptr, true), in_turn(graph, nullptr, true);
     std::vector<Index> points;
     for (Index k = 0; k < 80; ++k) {
       points.push_back(k * 97 % flat.size());
-      front.add(source_at(points.back()));
-      front.run();
+      at_once.add(source_at(points.back()));
+      in_turn.add(source_at(points.back()));
+      in_turn.run();
     }
+    at_once.run();
     for (Index i = 0; i < flat.size(); ++i) {
       if (flat.dimension == 2 && is_near_rim(i, side)) continue;
       double least = INFINITY;
       for (const Index point : points) least = std::min(least, length(flat.exact(point, i)));
-      ASSERT_NEAR(front.distance(Vertex(i)), least, 1e-9) << "vertex " << i;
-      const auto exact = flat.exact(points[front.nearest(Vertex(i))], i);
-      ASSERT_NEAR(length(exact), least, 1e-9) << "vertex " << i;
-      if (front.has_directions() && least > 0) expect_near(least * front.direction(Vertex(i)), exact, 1e-9);
+      for (const Wavefront* front : {&at_once, &in_turn}) {
+        ASSERT_NEAR(front->distance(Vertex(i)), least, 1e-9) << "vertex " << i;
+        const auto exact = flat.exact(points[front->nearest(Vertex(i))], i);
+        ASSERT_NEAR(length(exact), least, 1e-9) << "vertex " << i;
+        if (front->has_directions() && least > 0) expect_near(least * front->direction(Vertex(i)), exact, 1e-9);
+      }
     }
   }
 }
