@@ -1,18 +1,9 @@
-// What is made by exact maps, within a tolerance.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
-
+// Applications of exact maps within a tolerance.
 #include "ahm/applications/atlas.hpp"
 #include "ahm/applications/cells.hpp"
 #include "ahm/applications/mean.hpp"
 #include "ahm/applications/stroke.hpp"
-#include "ahm/conformance/triangle_meshes.hpp"
-#include "ahm/error.hpp"
-#include "ahm/trimesh/triangle_mesh_surface.hpp"
+#include "mapped_surfaces.hpp"
 #include "support/expect_error.hpp"
 
 namespace ahm::test {
@@ -23,12 +14,12 @@ const ExactMapOptions within{.tolerance = tolerance, .progress = {}};
 
 class WithinATolerance : public testing::Test {
  protected:
-  const Mesh mesh = split_icosphere(640);
-  const trimesh::TriangleMeshSurface surface = trimesh::TriangleMeshSurface::build(mesh.positions, mesh.faces);
+  const trimesh::TriangleMeshSurface surface = mesh_surface(split_icosphere(640));
   const ExactGeodesics geodesics{surface};
   const std::array<Vertex, 3> sources{Vertex(3), Vertex(200), Vertex(411)};
+  const SurfaceCurve curve = draw_curve(surface, std::array<CurvePoint, 3>{Row{3}, Row{150}, Row{411}});
 
-  /// Near the exact distances, and not the same.
+  /// Expects distances near the exact ones, but not equal to them.
   static void expect_near(std::span<const double> found, std::span<const double> exact) {
     ASSERT_EQ(found.size(), exact.size());
     for (std::size_t i = 0; i < found.size(); ++i) ASSERT_NEAR(found[i], exact[i], tolerance * exact[i] + 1e-12) << i;
@@ -36,7 +27,7 @@ class WithinATolerance : public testing::Test {
   }
 };
 
-TEST_F(WithinATolerance, CellsHaveDistancesAndLabelsOfSourcesAsNear) {
+TEST_F(WithinATolerance, CellsHaveDistancesAndLabelsOfNearSources) {
   const VoronoiCells cells = voronoi_cells(geodesics, sources, within), exact = voronoi_cells(geodesics, sources);
   expect_near(cells.distances, exact.distances);
   for (std::size_t k = 0; k < sources.size(); ++k) {
@@ -65,40 +56,30 @@ TEST_F(WithinATolerance, FarthestPointsAreNearlyTheFarthest) {
   }
 }
 
-TEST_F(WithinATolerance, MapsOfAtlasesAndCentersAre) {
+TEST_F(WithinATolerance, MapsAtlasesCentersAndCurvesAreComputed) {
   const AnySolver maps(geodesics, within), exact(geodesics);
-  constexpr double everywhere = std::numeric_limits<double>::infinity();
-  expect_near(maps.map(Vertex(5), everywhere).distances(), exact.map(Vertex(5), everywhere).distances());
+  expect_near(maps.map(Vertex(5), INFINITY).distances(), exact.map(Vertex(5), INFINITY).distances());
   expect_near(maps.cells(sources).distances, exact.cells(sources).distances);
-
-  const FaceList faces = surface.faces();
-  const Atlas atlas = make_atlas(maps, sources, faces), sharp = make_atlas(exact, sources, faces);
-  ASSERT_EQ(atlas.coordinates.size(), sharp.coordinates.size());
-  EXPECT_NE(atlas.coordinates, sharp.coordinates);
-
-  const Center center = karcher_mean(maps, sources), best = karcher_mean(exact, sources);
-  EXPECT_NEAR(center.spread, best.spread, 2 * tolerance * best.spread);
-  EXPECT_NE(center.spread, best.spread);
-}
-
-TEST_F(WithinATolerance, StrokesAre) {
-  const CurvePoint given[] = {Row{3}, Row{150}, Row{411}};
-  const SurfaceCurve curve = draw_curve(surface, given);
   expect_near(geodesics.log_map(curve.samples, within).map.distances(),
               geodesics.log_map(curve.samples).map.distances());
+  const Atlas atlas = make_atlas(maps, sources, surface.faces()),
+              exact_atlas = make_atlas(exact, sources, surface.faces());
+  ASSERT_EQ(atlas.coordinates.size(), exact_atlas.coordinates.size());
+  EXPECT_NE(atlas.coordinates, exact_atlas.coordinates);
+  const Center center = karcher_mean(maps, sources), exact_center = karcher_mean(exact, sources);
+  EXPECT_NEAR(center.spread, exact_center.spread, 2 * tolerance * exact_center.spread);
+  EXPECT_NE(center.spread, exact_center.spread);
 }
 
-TEST_F(WithinATolerance, IsRefusedOutsideOfItsRange) {
-  const CurvePoint given[] = {Row{3}, Row{4}};
-  const SurfaceCurve curve = draw_curve(surface, given);
-  for (double bad : {-1e-3, 0.11, std::numeric_limits<double>::quiet_NaN()}) {
+TEST_F(WithinATolerance, TolerancesOutsideOfTheRangeAreRefused) {
+  for (double bad : {-1e-3, 0.11, static_cast<double>(NAN)}) {
     const ExactMapOptions options{.tolerance = bad, .progress = {}};
     const AnySolver maps(geodesics, options);
-    expect_error<InvalidArgument>([&] { voronoi_cells(geodesics, sources, options); }, "'tolerance'");
-    expect_error<InvalidArgument>([&] { farthest_points(geodesics, Vertex(0), 3, options); }, "'tolerance'");
-    expect_error<InvalidArgument>([&] { geodesics.log_map(curve.samples, options); }, "'tolerance'");
-    expect_error<InvalidArgument>([&] { make_atlas(maps, sources, surface.faces()); }, "'tolerance'");
-    expect_error<InvalidArgument>([&] { karcher_mean(maps, sources); }, "'tolerance'");
+    const std::function<void()> calls[] = {
+        [&] { voronoi_cells(geodesics, sources, options); }, [&] { farthest_points(geodesics, Vertex(0), 3, options); },
+        [&] { geodesics.log_map(curve.samples, options); }, [&] { make_atlas(maps, sources, surface.faces()); },
+        [&] { karcher_mean(maps, sources); }};
+    for (const auto& call : calls) expect_error<InvalidArgument>(call, "'tolerance'");
   }
 }
 

@@ -1,4 +1,4 @@
-// The contract suite on graphs that are given by hand, and the paper's operator on every kind of graph the core knows.
+// The contract suite, which includes the paper's operator, on every kind of graph of the core.
 #include "ahm/conformance/curved_graphs.hpp"
 #include "ahm/conformance/flat_graphs.hpp"
 #include "ahm/conformance/graph_changes.hpp"
@@ -7,22 +7,16 @@
 namespace ahm::test {
 namespace {
 
-struct RotationGraphs {
-  static std::unique_ptr<TangentGraph> surface() { return std::make_unique<CsrGraph>(sphere_graph(150)); }
-  static std::unique_ptr<TangentGraph> flat() { return std::make_unique<CsrGraph>(planar_triangulation(12).data); }
+template <CsrGraphData (*make_surface)(), CsrGraphData (*make_flat)()>
+struct Graphs {
+  static std::unique_ptr<TangentGraph> surface() { return std::make_unique<CsrGraph>(make_surface()); }
+  static std::unique_ptr<TangentGraph> flat() { return std::make_unique<CsrGraph>(make_flat()); }
 };
 
-struct BlockGraphs {
-  static std::unique_ptr<TangentGraph> surface() { return std::make_unique<CsrGraph>(as_blocks(sphere_graph(150, 2))); }
-  static std::unique_ptr<TangentGraph> flat() {
-    return std::make_unique<CsrGraph>(planar_triangulation(12, TransportKind::block, true).data);
-  }
-};
-
-struct SpatialGraphs {
-  static std::unique_ptr<TangentGraph> surface() { return std::make_unique<CsrGraph>(bent_lattice(5)); }
-  static std::unique_ptr<TangentGraph> flat() { return std::make_unique<CsrGraph>(lattice3(6).data); }
-};
+using RotationGraphs = Graphs<[] { return sphere_graph(150); }, [] { return planar_triangulation(12).data; }>;
+using BlockGraphs = Graphs<[] { return as_blocks(sphere_graph(150, 2)); },
+                           [] { return planar_triangulation(12, TransportKind::block, true).data; }>;
+using SpatialGraphs = Graphs<[] { return bent_lattice(5); }, [] { return lattice3(6).data; }>;
 
 INSTANTIATE_TYPED_TEST_SUITE_P(Rotations, GraphContract, RotationGraphs);
 INSTANTIATE_TYPED_TEST_SUITE_P(Blocks, GraphContract, BlockGraphs);

@@ -1,31 +1,17 @@
-// Every law of a tangent graph, broken once, is found and named.
+// Every law of a tangent graph, broken once, is reported by name.
 #include "ahm/graph/validate.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
+#include <functional>
 
 #include "ahm/conformance/curved_graphs.hpp"
 #include "ahm/conformance/flat_graphs.hpp"
 #include "ahm/error.hpp"
-#include "ahm/graph/csr_graph.hpp"
+#include "support/expect_error.hpp"
 
 namespace ahm::test {
 namespace {
 
-template <class Break>
-void expect_invalid(CsrGraphData g, const Break& breaking, const std::string& text) {
-  breaking(g);
-  try {
-    const CsrGraph graph(g);
-    validate(graph);
-    ADD_FAILURE() << "no error; expected one that says: " << text;
-  } catch (const InvalidGraph& e) {
-    EXPECT_NE(std::string(e.what()).find(text), std::string::npos) << e.what();
-  }
-}
-
-TEST(Validate, AcceptsSoundGraphs) {
+TEST(Validate, AcceptsValidGraphs) {
   EXPECT_NO_THROW(validate(CsrGraph(sphere_graph(80))));
   EXPECT_NO_THROW(validate(CsrGraph(planar_triangulation(6, TransportKind::block, true).data)));
   EXPECT_NO_THROW(validate(CsrGraph(lattice3(4).data)));
@@ -34,73 +20,53 @@ TEST(Validate, AcceptsSoundGraphs) {
 TEST(Validate, NamesTheFirstBrokenLawOnAnyNumberOfThreads) {
   CsrGraphData g = sphere_graph(40000);  // more than one chunk of vertices
   g.weights[g.row_begin[39000]] *= 2;
+  const auto expect_first = [&](const std::string& text) {
+    for (const unsigned threads : {1, 4, 4, 4, 4, 4})
+      expect_error<InvalidGraph>([&] { validate(CsrGraph(g), threads); }, text);
+  };
   g.masses[38000] = 0;
-  for (const unsigned threads : {1U, 4U})
-    for (int run = 0; run < 5; ++run) try {
-        validate(CsrGraph(g), threads);
-        ADD_FAILURE();
-      } catch (const InvalidGraph& e) {
-        EXPECT_NE(std::string(e.what()).find("mass of vertex 38000"), std::string::npos) << e.what();
-      }
+  expect_first("mass of vertex 38000");
   g.masses[38000] = 1;
   g.weights[g.row_begin[100]] *= 2;
-  for (const unsigned threads : {1U, 4U}) try {
-      validate(CsrGraph(g), threads);
-      ADD_FAILURE();
-    } catch (const InvalidGraph& e) {
-      EXPECT_NE(std::string(e.what()).find("100"), std::string::npos) << e.what();
-      EXPECT_NE(std::string(e.what()).find("another weight"), std::string::npos) << e.what();
-    }
+  expect_first("100");
+  expect_first("another weight");
 }
 
 TEST(Validate, NamesTheBrokenLaw) {
-  const CsrGraphData g = sphere_graph(80);
-  expect_invalid(
-      g, [](auto& b) { b.masses[7] = 0; }, "mass of vertex 7");
-  expect_invalid(
-      g, [](auto& b) { b.masses[7] = INFINITY; }, "mass of vertex 7");
-  expect_invalid(
-      g, [](auto& b) { b.weights[0] = NAN; }, "weight is not finite");
-  expect_invalid(
-      g, [](auto& b) { b.weights[0] *= 1.001; }, "another weight");
-  expect_invalid(
-      g,
-      [](auto& b) {
-        b.logs[3] = NAN;
-        b.mean_edge_length = 1.0;
-      },
-      "logarithm is not finite");
-  expect_invalid(
-      g, [](auto& b) { b.transports[0] *= 1.01; }, "not orthogonal");
-  expect_invalid(
-      g, [](auto& b) { std::swap(b.transports[0], b.transports[1]); }, "not inverse");
-  expect_invalid(
-      g, [](auto& b) { b.neighbors[0] = 0; }, "self loops");
-  expect_invalid(
-      g, [](auto& b) { b.neighbors[0] = 79; }, "edge 0 -> 79");
-  expect_invalid(
-      g, [](auto& b) { b.neighbors[0] = 80; }, "outside [0, 80)");
-  expect_invalid(
-      g, [](auto& b) { b.mean_edge_length = 0.0; }, "mean edge length");
-  for (const double unit : {0.0, -1.0, static_cast<double>(INFINITY), static_cast<double>(NAN)})
-    expect_invalid(
-        g, [&](auto& b) { b.length_unit = unit; }, "unit of length");
-  expect_invalid(
-      g, [](auto& b) { b.weights.pop_back(); }, "'weights' has length");
-  expect_invalid(
-      g, [](auto& b) { b.row_begin[3] = 100000; }, "row_begin");
-  expect_invalid(
-      CsrGraphData{.row_begin = {0}}, [](auto&) {}, "no vertices");
-  expect_invalid(
-      line_graph(4).data,
-      [](auto& b) {
-        b.kind = TransportKind::rotation2;
-        b.transports.resize(12);
-      },
-      "dimension 2");
+  const struct {
+    const char* law;
+    std::function<void(CsrGraphData&)> break_law;
+  } cases[] = {
+      {"mass of vertex 7", [](auto& g) { g.masses[7] = 0; }},
+      {"mass of vertex 7", [](auto& g) { g.masses[7] = INFINITY; }},
+      {"weight is not finite", [](auto& g) { g.weights[0] = NAN; }},
+      {"another weight", [](auto& g) { g.weights[0] *= 1.001; }},
+      {"logarithm is not finite", [](auto& g) { g.logs[3] = NAN, g.mean_edge_length = 1.0; }},
+      {"not orthogonal", [](auto& g) { g.transports[0] *= 1.01; }},
+      {"not inverse", [](auto& g) { std::swap(g.transports[0], g.transports[1]); }},
+      {"self loops", [](auto& g) { g.neighbors[0] = 0; }},
+      {"edge 0 -> 79", [](auto& g) { g.neighbors[0] = 79; }},
+      {"outside [0, 80)", [](auto& g) { g.neighbors[0] = 80; }},
+      {"edge ", [](auto& g) { g.neighbors.back() = g.neighbors[g.row_begin[79]]; }},  // an edge without its reverse
+      {"mean edge length", [](auto& g) { g.mean_edge_length = 0.0; }},
+      {"unit of length", [](auto& g) { g.length_unit = 0.0; }},
+      {"unit of length", [](auto& g) { g.length_unit = -1.0; }},
+      {"unit of length", [](auto& g) { g.length_unit = INFINITY; }},
+      {"unit of length", [](auto& g) { g.length_unit = NAN; }},
+      {"'weights' has length", [](auto& g) { g.weights.pop_back(); }},
+      {"row_begin", [](auto& g) { g.row_begin[3] = 100000; }},
+      {"no vertices", [](auto& g) { g = {.row_begin = {0}}; }},
+      {"dimension 2",
+       [](auto& g) { g = line_graph(4).data, g.kind = TransportKind::rotation2, g.transports.resize(12); }},
+  };
+  for (const auto& [law, break_law] : cases) {
+    CsrGraphData g = sphere_graph(80);
+    break_law(g);
+    expect_error<InvalidGraph>([&] { validate(CsrGraph(g)); }, law);
+  }
 }
 
-TEST(Validate, FindsStarsOfAnotherDimension) {
+TEST(Validate, RefusesStarsOfAnotherDimension) {
   struct Wrong final : TangentGraph {
     CsrGraph plane{sphere_graph(60)};
     Index size() const noexcept override { return plane.size(); }
@@ -116,13 +82,6 @@ TEST(Validate, FindsStarsOfAnotherDimension) {
     }
   };
   EXPECT_THROW(validate(Wrong{}), InvalidGraph);
-}
-
-TEST(Validate, FindsAMissingReverseEdge) {
-  CsrGraphData g = sphere_graph(80);
-  // Turn the last edge of the last vertex into a second edge to its first neighbour.
-  g.neighbors.back() = g.neighbors[g.row_begin[79]];
-  EXPECT_THROW(validate(CsrGraph(g)), InvalidGraph);
 }
 
 }  // namespace

@@ -1,18 +1,12 @@
-// The factored operators against what they are made of, and factorizations that must not pass as good.
-#include <gtest/gtest.h>
-
-#include <cmath>
+// The factored operators against their definition, factorizations that must be refused, and batches of solves: threads, progress,
+// cancellation.
+#include <atomic>
 #include <numbers>
-#include <string>
+#include <thread>
 
-#include "ahm/conformance/curved_graphs.hpp"
-#include "ahm/conformance/flat_graphs.hpp"
-#include "ahm/conformance/graph_changes.hpp"
 #include "ahm/conformance/triangle_meshes.hpp"
-#include "ahm/error.hpp"
-#include "ahm/heat/heat_operators.hpp"
-#include "ahm/maps/log_map_solver.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
+#include "core/solved_graph.hpp"
 
 namespace ahm::test {
 namespace {
@@ -44,11 +38,11 @@ TEST(HeatOperators, InvertTheirDefinition) {
   const HeatOperators heat(graph, {.t_coef = 3.0});
   EXPECT_DOUBLE_EQ(heat.tau()[0], 3.0 * graph.mean_edge_length() * graph.mean_edge_length());
   for (bool vectors : {false, true}) {
-    std::vector<double> x(static_cast<std::size_t>(graph.size()) * (vectors ? 2 : 1));
+    std::vector<double> x(to_size(graph.size()) * (vectors ? 2 : 1));
     for (std::size_t k = 0; k < x.size(); ++k) x[k] = std::sin(1.0 + 3.7 * static_cast<double>(k));
     std::vector<double> solved = apply(graph, heat, x, vectors);
     vectors ? heat.solve_vector(solved, 1) : heat.solve_scalar(solved, 1);
-    for (std::size_t k = 0; k < x.size(); ++k) ASSERT_NEAR(solved[k], x[k], 1e-12);
+    expect_near(solved, x, 1e-12);
   }
 }
 
@@ -60,7 +54,7 @@ TEST(HeatOperators, SolveColumnsIndependently) {
   both[107] = 1.0;
   heat.solve_scalar(both, 2);
   heat.solve_scalar(first, 1);
-  for (std::size_t i = 0; i < 100; ++i) ASSERT_NEAR(both[i], first[i], 1e-15);
+  expect_near(std::span(both).first(100), first, 1e-15);
   EXPECT_NEAR(both[7], both[103], 1e-15);  // A is symmetric: heat from 3 at 7 is heat from 7 at 3
   EXPECT_THROW(heat.solve_scalar(first, 2), InvalidArgument);
   EXPECT_THROW(heat.solve_vector(first, 1), InvalidArgument);
@@ -68,15 +62,22 @@ TEST(HeatOperators, SolveColumnsIndependently) {
   EXPECT_NO_THROW(heat.solve_scalar(none, 0));
 }
 
-TEST(HeatOperators, RefuseAnIndefiniteOperator) {
-  CsrGraphData g = sphere_graph(60);
-  for (double& w : g.weights) w = -w;
-  const CsrGraph graph(g);
-  EXPECT_THROW(HeatOperators{graph}, NotPositiveDefinite);
+TEST(HeatOperators, RefuseInvalidGraphsAndTimesWithoutDigits) {
+  CsrGraphData indefinite = sphere_graph(60), broken = indefinite;
+  for (double& w : indefinite.weights) w = -w;
+  EXPECT_THROW(HeatOperators{CsrGraph(indefinite)}, NotPositiveDefinite);
+  broken.masses[17] = NAN;
+  EXPECT_THROW(HeatOperators{CsrGraph(broken)}, InvalidGraph);                   // before the factorization
+  EXPECT_THROW(HeatOperators(CsrGraph(broken), {.check_graph = false}), Error);  // by the factorization
+  EXPECT_THROW(HeatOperators{CsrGraph(scaled(sphere_graph(60), 1e-170))}, InvalidGraph);
+  const CsrGraph graph(sphere_graph(300));
+  EXPECT_NO_THROW(HeatOperators(graph, {.t_coef = 1e4}));
+  for (double t_coef : {1e12, 1e16, 1e25, 1e200})
+    EXPECT_THROW(HeatOperators(graph, {.t_coef = t_coef}), Error) << t_coef;
 }
 
-/// Where digits do not reach, B's pivots may fail, too: what is wrong with A is told.
-TEST(HeatOperators, TellOfLostHeatBeforeB) {
+// If the digits do not suffice, the pivots of B may fail as well; the error is about A.
+TEST(HeatOperators, ReportLostHeatBeforeB) {
   for (const Index side : {20, 40, 60, 150}) {
     const CsrGraph graph(planar_triangulation(side).data);
     for (const double t_coef : {1e16, 1e17, 1e18, 1e19})
@@ -84,61 +85,96 @@ TEST(HeatOperators, TellOfLostHeatBeforeB) {
           const HeatOperators heat(graph, {.t_coef = t_coef, .threads = threads});
           ADD_FAILURE() << side << ", " << t_coef;
         } catch (const NotPositiveDefinite& error) {
-          const bool is_of_A =
-              error.fault() == "heat_lost" || std::string(error.what()).find(" A ") != std::string::npos;
-          EXPECT_TRUE(is_of_A) << error.what();
+          EXPECT_TRUE(error.fault() == "heat_lost" || std::string(error.what()).find(" A ") != std::string::npos)
+              << error.what();
         }
   }
 }
 
-TEST(HeatOperators, RefuseABrokenGraphBeforeFactoring) {
-  CsrGraphData g = sphere_graph(60);
-  g.masses[17] = NAN;
-  const CsrGraph graph(g);
-  EXPECT_THROW(HeatOperators{graph}, InvalidGraph);
-  EXPECT_THROW(HeatOperators(graph, {.check_graph = false}), Error);  // the factorization's own checks catch it too
-}
-
-TEST(HeatOperators, RefuseTimesThatLeaveNoDigits) {
-  const CsrGraph graph(sphere_graph(300));
-  EXPECT_NO_THROW(HeatOperators(graph, {.t_coef = 1e4}));
-  for (double t_coef : {1e12, 1e16, 1e25, 1e200})
-    EXPECT_THROW(HeatOperators(graph, {.t_coef = t_coef}), Error) << t_coef;
-}
-
-TEST(HeatOperators, ServeEdgesAThousandTimesAsLongAsOthersAtLongTimes) {
-  // Around a tube 64 edges of 0.1, along it 39 of 100: rounding adds up to the same side everywhere.
-  Mesh tube;
+TEST(HeatOperators, SupportEdgesAThousandTimesAsLongAsOthersAtLongTimes) {
+  // Around a tube 64 edges of 0.1, along it 39 of 100: rounding errors have the same sign everywhere.
+  Mesh mesh;
   constexpr Index around = 64, along = 40;
   for (Index i = 0; i < along; ++i)
     for (Index j = 0; j < around; ++j) {
       const double turn = 2 * std::numbers::pi * j / around;
-      tube.positions.push_back({std::cos(turn), std::sin(turn), 100.0 * i});
-    }
-  for (Index i = 0; i + 1 < along; ++i)
-    for (Index j = 0; j < around; ++j) {
+      mesh.positions.push_back({std::cos(turn), std::sin(turn), 100.0 * i});
       const Index a = i * around + j, b = i * around + (j + 1) % around;
-      tube.faces.push_back({a, b, b + around});
-      tube.faces.push_back({a, b + around, a + around});
+      if (i + 1 < along) mesh.faces.insert(mesh.faces.end(), {{a, b, b + around}, {a, b + around, a + around}});
     }
-  const auto surface = trimesh::TriangleMeshSurface::build(tube.positions, tube.faces);
-  const auto map = LogMapSolver(surface.graph(), {.t_coef = 30}).solve(Source::at_vertex(Vertex{0}));
-  for (Index i = 3; i < along; ++i)  // where the way round is nothing beside the way along
-    for (Index j = 0; j < around; ++j) {
-      const auto phi = map.coordinates(Vertex(i * around + j));
-      ASSERT_NEAR(std::hypot(phi[0], phi[1]), 100.0 * i, 0.01 * 100 * i);
-    }
+  const auto surface = trimesh::TriangleMeshSurface::build(mesh.positions, mesh.faces);
+  const auto map = LogMapSolver(surface.graph(), {.t_coef = 30}).solve(source_at(0));
+  for (Index v = 3 * around; v < along * around; ++v)  // so far away that the distance around is negligible
+    ASSERT_NEAR(length(map.coordinates(Vertex(v))), 100.0 * (v / around), 0.01 * 100 * (v / around));
 }
 
-TEST(HeatOperators, RefuseGraphsWithoutDigitsForTheirTime) {
-  const CsrGraph graph(scaled(sphere_graph(60), 1e-170));
-  EXPECT_THROW(HeatOperators(graph, {}), InvalidGraph);
-}
-
-TEST(LinearAlgebra, SaysWhatItRunsOn) {
+TEST(LinearAlgebra, HasNamesOfItsLibraries) {
   const LinearAlgebraInfo info = linear_algebra_info();
   EXPECT_FALSE(info.cholmod.empty());
   EXPECT_FALSE(info.blas.empty());
+}
+
+class Batch : public testing::Test {
+ protected:
+  Batch() {
+    for (Index p = 0; p < 37; ++p) sources.push_back(source_at(p * 16));
+  }
+  const SolvedGraph sphere{sphere_graph(600)};
+  const LogMapSolver& solver = sphere.solver;
+  std::vector<Source> sources;
+};
+
+TEST_F(Batch, SolvesFromManyThreadsAtOnce) {
+  std::vector<LogMap> expected;
+  for (const Source& source : sources) expected.push_back(solver.solve(source, {.threads = 1}));
+  std::atomic<int> same{0}, calls{0};
+  {
+    std::vector<std::jthread> threads;
+    for (int t = 0; t < 8; ++t)
+      threads.emplace_back([&, t] {
+        for (std::size_t s = t % 3; s < sources.size(); s += 3, ++calls) {
+          const LogMap map = solver.solve(sources[s], {.threads = 1});
+          same += same_bits(map.coordinates(), expected[s].coordinates()) &&
+                  std::ranges::equal(map.status(), expected[s].status());
+        }
+      });
+  }
+  EXPECT_EQ(same, calls);
+  EXPECT_TRUE(solver.solve(std::span<const Source>()).empty());
+}
+
+TEST_F(Batch, ReportsProgressUpToTheEnd) {
+  double last = -1;
+  MapOptions options{.progress = Progress{}};
+  options.progress->report = [&](std::string_view stage, double fraction) {
+    EXPECT_EQ(stage, "solve");
+    EXPECT_GE(fraction, last);
+    last = fraction;
+  };
+  solver.solve(sources, options);
+  EXPECT_EQ(last, 1.0);
+}
+
+TEST_F(Batch, StopsBeforeTheStartAndInTheMiddle) {
+  std::stop_source stop;
+  MapOptions options{.threads = 1, .progress = Progress{{}, stop.get_token()}};
+  options.progress->report = [&](std::string_view, double fraction) {
+    if (fraction > 0) stop.request_stop();
+  };
+  EXPECT_THROW(solver.solve(sources, options), Cancelled);
+  EXPECT_TRUE(stop.stop_requested());
+  EXPECT_THROW(solver.solve(sources, {.progress = Progress{{}, stop.get_token()}}), Cancelled);
+  EXPECT_THROW(LogMapSolver(sphere.graph, {.progress = Progress{{}, stop.get_token()}}), Cancelled);
+}
+
+TEST_F(Batch, ReportsTheStagesOfTheFactorization) {
+  std::vector<std::string> stages;
+  FactorOptions options;
+  options.progress.report = [&](std::string_view stage, double) { stages.emplace_back(stage); };
+  const HeatOperators heat(sphere.graph, options);
+  EXPECT_EQ(stages, (std::vector<std::string>{"check", "assemble", "analyze", "factor", "factor"}));
+  EXPECT_GT(heat.statistics().nonzeros_A, sphere.graph.size());
+  EXPECT_GT(heat.statistics().bytes, 0u);
 }
 
 }  // namespace
