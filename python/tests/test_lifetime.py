@@ -1,4 +1,4 @@
-"""Threads, signals, forks, pickles, and the order in which things go away."""
+"""Threads, signals, forks, pickles, and the order of destruction."""
 
 import copy
 import gc
@@ -97,7 +97,7 @@ INTERRUPTED = {
 
 @pytest.fixture
 def interruptible():
-    """Python's own handler, also where the tests run in the background of a shell, which ignores SIGINT."""
+    """Python's own handler. A shell that runs the tests in the background ignores SIGINT."""
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     yield
     signal.signal(signal.SIGINT, before)
@@ -105,7 +105,7 @@ def interruptible():
 
 @pytest.mark.parametrize("name", INTERRUPTED)
 def test_ctrl_c_ends_a_computation_and_leaves_the_session_usable(big, name, interruptible):
-    """It is repeated until the signal comes; KeyboardInterrupt comes out of it."""
+    """The computation is repeated until the signal arrives, and raises KeyboardInterrupt."""
     arrays = ahm.shapes.plane(500, 500)
     timer = threading.Timer(0.05, lambda: os.kill(os.getpid(), signal.SIGINT))
     with pytest.raises(KeyboardInterrupt):
@@ -169,7 +169,7 @@ def test_a_forked_child_computes(sphere):
 
 
 def test_the_interpreter_ends_under_daemon_threads_that_compute():
-    """They are cut off: none of them ends by itself, and an ended interpreter is left alone."""
+    """The threads never end by themselves, and do not use the interpreter after its end."""
     result = run_python("""
         import ahm, threading, time
         mesh = ahm.TriangleMesh(*ahm.shapes.plane(200, 200))
@@ -280,7 +280,7 @@ def test_processes_share_work_by_pickles(sphere):
 
 
 def test_running_out_of_memory_is_a_memory_error():
-    """With 1 GB of address space left: an array that does not fit, then something that does."""
+    """1 GB of address space is left: for an array that does not fit, then for a map that does."""
     result = run_python("""
         import resource, ahm
         grid = ahm.Grid((9000, 9000))
@@ -296,7 +296,7 @@ def test_running_out_of_memory_is_a_memory_error():
 
 
 def test_maps_that_cannot_fit_are_refused_at_once():
-    """Far larger than 4 GB, and by the hundred million vertices that nobody should wait for."""
+    """A map on 1.6 billion vertices needs far more than 4 GB. The error comes before any computation."""
     result = run_python("""
         import resource, ahm
         resource.setrlimit(resource.RLIMIT_AS, (4 << 30, 4 << 30))

@@ -1,4 +1,4 @@
-"""Points named in every way are the same points, wherever one is taken."""
+"""All formats of a point name the same point, in every function that takes points."""
 
 import numpy as np
 import pytest
@@ -71,8 +71,8 @@ def test_distances_from_points_between_rows_are_straight_lines(flat_surfaces, me
         np.testing.assert_allclose(ahm.distance(s, source, method=method), np.linalg.norm(s.points - at, axis=1), atol=1e-9)
 
 
-def test_vectors_and_values_start_where_they_are_given(flat_surfaces):
-    """Vectors stay what they are on the plane; values are the quotient of the solutions from the points' corners."""
+def test_vectors_and_values_start_at_the_points(flat_surfaces):
+    """Vectors are constant on the plane. Values are quotients of solutions; the right-hand sides are at the corners of the faces."""
     from scipy.sparse.linalg import splu
 
     for kind in MESHES + ["cloud", "grid"]:
@@ -92,13 +92,13 @@ def test_vectors_and_values_start_where_they_are_given(flat_surfaces):
     heat = splu(ops.A.tocsc()).solve(weights)
     found = ahm.extend(s, ([40, 70], [[0.2, 0.3, 0.5], [0.6, 0.4, 0.0]]), [-1.0, 3.0])
     np.testing.assert_allclose(found, (heat @ [-1.0, 3.0]) / heat.sum(axis=1), rtol=1e-6)
-    # Components are those of the axes that a log map from there has.
+    # Components refer to the axes of the log map from this point.
     axes = ahm.log_map(s, (40, [0.2, 0.3, 0.5])).source.axes
     np.testing.assert_allclose(ahm.transport(s, (40, [0.2, 0.3, 0.5]), [0.6, 0.8]) @ np.array([1, 0]),
                                s.frames[:, 0] @ (0.6 * axes[0] + 0.8 * axes[1]), atol=1e-9)
 
 
-def test_heat_knows_the_distance_from_several_points(flat_surfaces):
+def test_heat_distance_from_several_points(flat_surfaces):
     for kind in ("triangles", "refined", "cloud", "grid"):
         s = flat_surfaces[kind]
         width = 2 if kind == "grid" else 3
@@ -106,10 +106,10 @@ def test_heat_knows_the_distance_from_several_points(flat_surfaces):
         P = np.asarray(s.points)[:, :width]
         away = np.linalg.norm(P[:, None] - places[None], axis=2)
         found = ahm.distance(s, places, method="heat")
-        clear = np.diff(np.sort(away, axis=1)[:, :2], axis=1)[:, 0] > 0.75  # heat from two sides mixes at the border
+        clear = np.diff(np.sort(away, axis=1)[:, :2], axis=1)[:, 0] > 0.75  # between two points their heat mixes
         known = clear | (kind in MESHES)
         np.testing.assert_allclose(found[known], away.min(axis=1)[known], atol=1e-9 if kind in MESHES else 0.125)
-        if kind not in MESHES:  # half an edge; rows near the points would be farther off
+        if kind not in MESHES:  # errors are smaller than from the nearest rows
             rows = away.argmin(axis=0)
             snapped = ahm.distance(s, rows, method="heat")
             assert np.abs(found - away.min(axis=1))[clear].mean() < 0.5 * np.abs(snapped - away.min(axis=1))[clear].mean()
@@ -147,7 +147,7 @@ def test_means_of_the_sphere_are_on_it_and_tell_how_good_they_are(sphere):
         assert mean.converged and 0 < mean.residual < most
         face, inside = mean.point
         np.testing.assert_allclose(inside @ sphere.points[sphere.faces[face]], mean.position, atol=1e-12)
-        # One map does not suffice from afar: it says so.
+        # One map does not suffice from a distant start: the result is not converged.
         far = ahm.karcher_mean(sphere, points, method=method, max_maps=1, start=[0.9, 0.9, 0.1])
         assert not far.converged and far.residual > mean.residual
 

@@ -1,4 +1,4 @@
-"""The names of potpourri3d, each against a closed form, vectors through the frames that come with them."""
+"""Functions with the names of potpourri3d, against closed forms. Frames of the solvers convert vectors."""
 
 import inspect
 import os
@@ -130,7 +130,7 @@ def balls():
 
 @pytest.mark.parametrize("name", ["mesh", "polygons", "cloud"])
 def test_vectors_in_the_gauge_are_those_of_the_sphere(balls, name):
-    """Log map and transport of the unit sphere in space, found through the frames that come with the solver."""
+    """Log map and transport on the unit sphere as vectors in space, by the frames of the solver."""
     V, solver = balls[0], balls[1][name]
     x, y, n = solver.get_tangent_frames()
     for a, b in ((x, x), (y, y), (n, n)):
@@ -146,7 +146,7 @@ def test_vectors_in_the_gauge_are_those_of_the_sphere(balls, name):
     start = np.cross(p, [0, 0, 1.0])
     start /= np.linalg.norm(start)
     carried = in_space(solver, solver.transport_tangent_vector(7, [x[7] @ start, y[7] @ start]))
-    axis = np.cross(p, V)  # Parallel transport along a great circle is the turn about its axis.
+    axis = np.cross(p, V)  # parallel transport along a great circle: a rotation about its axis
     along = axis / np.maximum(np.linalg.norm(axis, axis=1), 1e-30)[:, None]
     turned = start * np.cos(angle)[:, None] + np.cross(along, start) * np.sin(angle)[:, None] + along * (
         along @ start * (1 - np.cos(angle)))[:, None]
@@ -161,7 +161,7 @@ def test_distances_on_the_sphere_are_great_circles(balls, make):
     assert np.abs(make(V, F).compute_distance(7) - angle)[angle < 2.5].max() < 0.07  # an edge
 
 
-# name: parameters after self, with their defaults, as that package has them
+# name: parameters after self, with the defaults of potpourri3d
 SIGNATURES = {
     "MeshHeatMethodDistanceSolver": "V F t_coef=1.0 use_robust=True", "MeshHeatMethodDistanceSolver.compute_distance": "v_ind",
     "MeshHeatMethodDistanceSolver.compute_distance_multisource": "v_inds", "compute_distance": "V F v_ind",
@@ -202,7 +202,7 @@ def test_signatures_are_those_that_scripts_use(name):
             continue
         stars = {p.VAR_POSITIONAL: "*", p.VAR_KEYWORD: "**"}.get(p.kind, "")
         found.append(stars + p.name + ("" if p.default is p.empty else f"={p.default!r}"))
-    # A further parameter, as `strategy` of a cloud's log map, hinders no script.
+    # Scripts also run with additional parameters, such as `strategy` of the log map of a cloud.
     assert found[: len(wanted)] == wanted and all("=" in more for more in found[len(wanted) :])
 
 

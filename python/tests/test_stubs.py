@@ -1,4 +1,4 @@
-"""The stubs of the extension module say what is in it; everything public has types, a docstring and, of functions, an example."""
+"""Stubs describe the extension module. Everything public has types and a docstring, functions also an example."""
 
 import ast
 import inspect
@@ -43,10 +43,10 @@ def test_the_stubs_list_what_the_module_has():
 
 @pytest.mark.parametrize("check", ["types", "stubs"])
 def test_mypy_finds_nothing(check, tmp_path, tmp_path_factory):
-    """The package agrees with itself and its stubs; what pybind11 adds to every class is let pass."""
+    """The package agrees with its types and stubs. Members that pybind11 adds to every class are allowed."""
     pytest.importorskip("mypy")
     settings, passed = tmp_path / "mypy.ini", tmp_path / "allowed"
-    cache = tmp_path_factory.getbasetemp() / "mypy"  # the second check takes what the first one read
+    cache = tmp_path_factory.getbasetemp() / "mypy"  # shared by both checks
     settings.write_text(f"[mypy]\nignore_missing_imports = true\ncache_dir = {cache}\n")
     passed.write_text(r"ahm\._core\.(Body|Inverse|Map|PolarSolver|Solver)(\.__init__)?" + "\n")
     command = {"types": ["mypy", "--config-file", settings, "-p", "ahm"],
@@ -58,7 +58,7 @@ def test_mypy_finds_nothing(check, tmp_path, tmp_path_factory):
 
 
 def count(function):
-    """Number of parameters, of the signature that pybind11 puts first in the docstring."""
+    """Number of parameters of the signature, which pybind11 writes to the first line of the docstring."""
     inside = function.__doc__.split("\n")[0].split("(", 1)[1].rsplit(")", 1)[0]
     return len(re.findall(r"(?:^|, )(?:self|arg\d+)\b", inside))
 
@@ -80,7 +80,7 @@ def test_everything_public_has_types_and_text():
 
 
 def documented():
-    """Functions, classes that are called, and methods, with their names and texts."""
+    """Functions, callable classes and methods, with their names and docstrings."""
     for name in ahm.__all__:
         thing = getattr(ahm, name)
         if inspect.isfunction(thing):
@@ -94,12 +94,12 @@ def documented():
 
 
 @pytest.mark.parametrize("name, thing, text", documented(), ids=lambda x: x if isinstance(x, str) and len(x) < 40 else "")
-def test_texts_tell_every_argument_and_the_errors(name, thing, text):
-    """Or say whose they share."""
+def test_docstrings_describe_every_argument_and_the_errors(name, thing, text):
+    """Or name the function with the same arguments and errors."""
     if not re.search(r"[Aa]rguments and errors as in\s+`", text):
         unknown = [p for p in inspect.signature(thing).parameters if p != "self" and not re.search(rf"\b{p}\b", text)]
-        assert not unknown, f"{name} does not tell {unknown}"
-        assert "Raises" in text or name == "LocalMaps", f"{name} does not tell its errors"
+        assert not unknown, f"{name} does not describe {unknown}"
+        assert "Raises" in text or name == "LocalMaps", f"{name} does not describe its errors"
 
 
 @pytest.mark.parametrize("name", pp3d.__all__)
