@@ -1,5 +1,6 @@
 // HTML pages: self-contained, escaped, and with all data of the scene.
 #include <cstring>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <regex>
 

@@ -22,7 +22,7 @@
 
 namespace ahm::render::test {
 
-/// The square [-1, 1]^2 in the plane z = 0 around `center`, with n x n faces or without faces. Source: the center; u = x, v = y.
+/// The square [-1, 1]^2 in the plane z = 0 around `center`, with n x n faces or none. Source: the center; u = x, v = y.
 struct Patch {
   std::vector<Vec3> points, normals;
   std::vector<Offset> face_begin;
