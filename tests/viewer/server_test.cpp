@@ -88,6 +88,8 @@ class ViewerServer : public testing::Test {
                     body);
   }
 
+  /// The server still answers, at the end of every test.
+  void TearDown() override { expect_serving(); }
   void expect_serving() const {
     const Response response = post(good);
     ASSERT_EQ(response.status, 200) << response.body;
@@ -117,7 +119,6 @@ TEST_F(ViewerServer, ServesThePageOnThisMachineOnly) {
   EXPECT_EQ(page.head.find("Access-Control-Allow"), std::string::npos);
   EXPECT_NE(page.body.find("Ahm.Viewer"), std::string::npos);
   for (const char* name : {"info", "surface"}) EXPECT_EQ(get(base() + name).status, 200) << name;
-  expect_serving();
 }
 
 TEST_F(ViewerServer, RefusesPathsWithoutTheToken) {
@@ -129,7 +130,6 @@ TEST_F(ViewerServer, RefusesPathsWithoutTheToken) {
   for (const std::string& path : {std::string("/"), std::string("/info"), wrong, wrong + "info", base().substr(0, 33),
                                   "/" + std::string(32, '0') + "/", std::string("//"), "/" + base()})
     expect_refused(get(path), path);
-  expect_serving();
 }
 
 TEST_F(ViewerServer, RefusesOtherHostsAndOrigins) {
@@ -150,7 +150,6 @@ TEST_F(ViewerServer, ServesNoFiles) {
        {"../../../../etc/passwd", "%2e%2e/%2e%2e/etc/passwd", "..%2f..%2fetc%2fpasswd", "viewer.js",
         "./info/../../etc/passwd", "surface/", "info%00", "/etc/passwd", "sphere.ply"})
     expect_refused(get(base() + path), path);
-  expect_serving();
 }
 
 TEST_F(ViewerServer, RefusesOtherMethodsAndEncodings) {
@@ -162,7 +161,6 @@ TEST_F(ViewerServer, RefusesOtherMethodsAndEncodings) {
   for (const char* type : {"text/plain", "multipart/form-data; boundary=x"}) expect_refused(post(good, {}, type), type);
   expect_refused(post_raw("Content-Type: application/json\r\nTransfer-Encoding: chunked\r\n", "ffffffff\r\n"),
                  "chunked");
-  expect_serving();
 }
 
 TEST_F(ViewerServer, RefusesOversizedBodiesAndHeads) {
@@ -171,7 +169,6 @@ TEST_F(ViewerServer, RefusesOversizedBodiesAndHeads) {
     expect_refused(post_raw("Content-Type: application/json\r\nContent-Length: " + length + "\r\n", "{}"), length);
   expect_refused(get(base() + std::string(100'000, 'a')), "a long path");
   expect_refused(get(base(), "X: " + std::string(100'000, 'a') + "\r\n"), "a long header");
-  expect_serving();
 }
 
 TEST_F(ViewerServer, RefusesMalformedBodiesAndBytes) {
@@ -188,7 +185,6 @@ TEST_F(ViewerServer, RefusesMalformedBodiesAndBytes) {
     shutdown(fd, SHUT_WR);
     expect_refused(receive(fd), "noise");
   }
-  expect_serving();
 }
 
 TEST_F(ViewerServer, AnswersAThousandRequestsAtOnce) {
@@ -212,11 +208,10 @@ TEST_F(ViewerServer, AnswersAThousandRequestsAtOnce) {
   }
   EXPECT_EQ(right, count);
   EXPECT_EQ(wrong, 0);
-  expect_serving();
 }
 
-/// The server closes idle connections after five seconds. If it served eight connections at a time, nearly all would be closed before
-/// it answers the request after them. Machines so slow that one request takes five seconds get two more tries.
+/// The server closes idle connections after five seconds. If it served eight connections at a time, nearly all would be closed
+/// before it answers the request after them. Machines so slow that one request takes five seconds get two more tries.
 TEST_F(ViewerServer, ServesNextToIdleConnections) {
   int open = 0;
   for (int tries = 0; tries < 3 && open < 200; ++tries) {
@@ -235,7 +230,6 @@ TEST_F(ViewerServer, ServesNextToIdleConnections) {
     for (const int fd : idle) receive(fd);  // until the server closes it
   }
   EXPECT_GE(open, 200);
-  expect_serving();
 }
 
 TEST_F(ViewerServer, AnswersMapsOfManyClients) {
