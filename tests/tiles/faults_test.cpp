@@ -5,10 +5,7 @@
 
 #include <csignal>
 
-#include "ahm/error.hpp"
-#include "ahm/tiles/tiled_log_map.hpp"
 #include "programs.hpp"
-#include "support/expect_error.hpp"
 #include "tiled_clouds.hpp"
 
 namespace ahm::test {

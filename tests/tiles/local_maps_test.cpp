@@ -1,15 +1,9 @@
 // Local maps of tiles equal those of the whole graph. Features are computed from these maps.
 #include "ahm/maps/local_maps.hpp"
 
-#include <gtest/gtest.h>
+#include <numbers>
 
-#include <array>
-#include <map>
-
-#include "ahm/error.hpp"
-#include "ahm/tiles/tiled_local_maps.hpp"
 #include "ahm/util/vec.hpp"
-#include "support/expect_error.hpp"
 #include "tiled_clouds.hpp"
 
 namespace ahm::test {
@@ -159,52 +153,47 @@ struct Curvatures {
   std::vector<Vec3> directions, positions;
 };
 
-/// Relative error of a paraboloid that is fitted within `reach`. The height of a circle over its arc length s is
-/// s^2 / 2r - s^4 / 24r^3; the second term changes the curvature by at most R^2 / 16 r^2 on spheres, R^2 / 12 r^2 on cylinders.
-double paraboloid_error(double reach, double radius) { return reach * reach / (12 * radius * radius); }
-
-TEST(LocalFeatures, CurvatureOfASphereIsThatOfItsRadius) {
-  const double radius = 20, reach = 4, tolerance = paraboloid_error(reach, radius);
-  std::vector<Vec3> points = even_sphere(3000).points;
-  for (Vec3& p : points) p = radius * p;
-  const std::vector<Vec2> curvatures = Curvatures(TiledCloud(points, {.tile_points = 1000}), reach).values;
-  const double sign = curvatures[0][0] > 0 ? 1 : -1;
-  for (const Vec2& kappa : curvatures) {
-    EXPECT_NEAR(sign * kappa[0] * radius, 1, tolerance);
-    EXPECT_NEAR(sign * kappa[1] * radius, 1, tolerance);
-    EXPECT_GE(std::abs(kappa[0]), std::abs(kappa[1]));
-  }
-}
-
-TEST(LocalFeatures, CurvatureOfACylinderIsAroundItsAxis) {
-  const double radius = 20, reach = 4, tolerance = paraboloid_error(reach, radius);
-  const auto columns = static_cast<Index>(2 * std::numbers::pi * radius);
-  std::vector<Vec3> points = jittered_grid(columns, 30, 5);
-  for (Vec3& p : points) {
-    const double angle = p[0] * 2 * std::numbers::pi / columns;
-    p = {radius * std::cos(angle), radius * std::sin(angle), p[1]};
-  }
+/// Principal curvatures 1 / radius and `second` / radius, apart from the sign of the normal, for z in [low, high]. The height
+/// of a circle over its arc length s is s^2 / 2r - s^4 / 24r^3. Within a distance R the second term changes the fit by at most
+/// R^2 / 16 r^2 on spheres and R^2 / 12 r^2 on cylinders.
+void expect_curvatures(const std::vector<Vec3>& points, double radius, double second, double low, double high) {
+  const double reach = 4, tolerance = reach * reach / (12 * radius * radius);
   const Curvatures found(TiledCloud(points, {.tile_points = 1000}), reach);
+  const double sign = found.values[0][0] > 0 ? 1 : -1;
   Index compared = 0;
   for (std::size_t i = 0; i < found.values.size(); ++i) {
-    const auto& [x, y, z] = found.positions[i];
-    if (z < reach || z > 29 - reach) continue;  // near the boundary the neighbors are on one side
-    EXPECT_NEAR(std::abs(found.values[i][0]) * radius, 1, tolerance);
-    EXPECT_NEAR(found.values[i][1] * radius, 0, tolerance);
-    EXPECT_NEAR(std::abs(x * found.directions[i][1] - y * found.directions[i][0]) / radius, 1, tolerance);
+    if (found.positions[i][2] < low || found.positions[i][2] > high) continue;
+    EXPECT_NEAR(sign * found.values[i][0] * radius, 1, tolerance);
+    EXPECT_NEAR(sign * found.values[i][1] * radius, second, tolerance);
+    EXPECT_GE(std::abs(found.values[i][0]), std::abs(found.values[i][1]));
     EXPECT_NEAR(norm(found.directions[i]), 1, 1e-12);
+    if (second == 0) {  // around the z axis
+      const double x = found.positions[i][0] / radius, y = found.positions[i][1] / radius;
+      EXPECT_NEAR(std::abs(x * found.directions[i][1] - y * found.directions[i][0]), 1, tolerance);
+    }
     ++compared;
   }
   EXPECT_GT(compared, 1500);
 }
 
-TEST(LocalFeatures, CurvatureOfAPlaneIsZero) {
-  std::vector<Vec3> points = hills(40);
-  for (Vec3& p : points) p[2] = 0.25 * p[0] - 0.5 * p[1] + 3;
-  for (const Vec2& kappa : Curvatures(TiledCloud(points, {.tile_points = 500}), 4).values) {
-    EXPECT_NEAR(kappa[0], 0, 1e-9);
-    EXPECT_NEAR(kappa[1], 0, 1e-9);
+TEST(LocalFeatures, CurvaturesOfSpheresCylindersAndPlanesAreExact) {
+  const double radius = 20;
+  std::vector<Vec3> sphere = even_sphere(3000).points;
+  for (Vec3& p : sphere) p = radius * p;
+  expect_curvatures(sphere, radius, 1, -radius, radius);
+
+  const auto columns = static_cast<Index>(2 * std::numbers::pi * radius);
+  std::vector<Vec3> cylinder = jittered_grid(columns, 30, 5);
+  for (Vec3& p : cylinder) {
+    const double angle = p[0] * 2 * std::numbers::pi / columns;
+    p = {radius * std::cos(angle), radius * std::sin(angle), p[1]};
   }
+  expect_curvatures(cylinder, radius, 0, 4, 25);  // near the boundary the neighbors are on one side
+
+  std::vector<Vec3> plane = hills(40);
+  for (Vec3& p : plane) p[2] = 0.25 * p[0] - 0.5 * p[1] + 3;
+  for (const Vec2& kappa : Curvatures(TiledCloud(plane, {.tile_points = 500}), 4).values)
+    for (double value : kappa) EXPECT_NEAR(value, 0, 1e-9);
 }
 
 TEST(LocalFeatures, CurvatureIsNanWithoutNeighbors) {

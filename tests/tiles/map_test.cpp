@@ -1,11 +1,4 @@
 // Maps over tiles have the bits of the marched map in memory, for every limit of the memory.
-#include <gtest/gtest.h>
-
-#include <map>
-
-#include "ahm/error.hpp"
-#include "ahm/tiles/tiled_log_map.hpp"
-#include "support/expect_error.hpp"
 #include "tiled_clouds.hpp"
 
 namespace ahm::test {

@@ -1,11 +1,8 @@
 // Maps by several ranks equal those of one process, whatever tiles the ranks own. The end of one rank ends all.
-#include <gtest/gtest.h>
-
 #include <csignal>
 #include <set>
 #include <sstream>
 
-#include "ahm/tiles/tiled_local_maps.hpp"
 #include "programs.hpp"
 #include "tiled_clouds.hpp"
 

@@ -100,18 +100,11 @@ class Background {
 /// Command line of ahm-mpi with this number of ranks.
 inline std::vector<std::string> mpi_command(int ranks, const std::vector<std::string>& arguments) {
   // Allows root, more ranks than cores that share the cores, and shared memory as in any container. MPI itself leaks.
-  std::vector<std::string> words{"/usr/bin/env",
-                                 "OMPI_ALLOW_RUN_AS_ROOT=1",
-                                 "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1",
-                                 "OMPI_MCA_rmaps_base_oversubscribe=1",
-                                 "OMPI_MCA_mpi_yield_when_idle=1",
-                                 "OMPI_MCA_hwloc_base_binding_policy=none",
-                                 "OMPI_MCA_btl=self,vader",
-                                 "OMPI_MCA_btl_vader_single_copy_mechanism=none",
-                                 "ASAN_OPTIONS=detect_leaks=0",
-                                 AHM_MPIRUN,
-                                 "-n",
-                                 std::to_string(ranks),
+  const char* script =
+      "export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1 "
+      "OMPI_MCA_mpi_yield_when_idle=1 OMPI_MCA_hwloc_base_binding_policy=none OMPI_MCA_btl=self,vader "
+      "OMPI_MCA_btl_vader_single_copy_mechanism=none ASAN_OPTIONS=detect_leaks=0; exec \"$@\"";
+  std::vector<std::string> words{"/bin/sh",      "-c", script, "sh", AHM_MPIRUN, "-n", std::to_string(ranks),
                                  AHM_MPI_PROGRAM};
   words.insert(words.end(), arguments.begin(), arguments.end());
   return words;

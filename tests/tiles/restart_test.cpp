@@ -1,12 +1,7 @@
 // Maps that were ended at any moment resume from the last checkpoint. The result has the bytes of a map that was not ended.
-#include <gtest/gtest.h>
-
 #include <csignal>
 
-#include "ahm/error.hpp"
-#include "ahm/tiles/tiled_log_map.hpp"
 #include "programs.hpp"
-#include "support/expect_error.hpp"
 #include "tiled_clouds.hpp"
 
 namespace ahm::test {

@@ -1,21 +1,15 @@
 // Maps of the tiles of a mesh equal those of the mesh in memory, row by row.
-#include <gtest/gtest.h>
-
 #include <cmath>
 
 #include "ahm/conformance/polygon_meshes.hpp"
 #include "ahm/conformance/triangle_meshes.hpp"
-#include "ahm/error.hpp"
 #include "ahm/maps/local_maps.hpp"
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/polymesh/polygon_mesh_surface.hpp"
 #include "ahm/surface/row_log_map.hpp"
 #include "ahm/tiles/tile_surface.hpp"
-#include "ahm/tiles/tiled_local_maps.hpp"
-#include "ahm/tiles/tiled_log_map.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "programs.hpp"
-#include "support/expect_error.hpp"
 #include "tiled_clouds.hpp"
 
 namespace ahm::test {

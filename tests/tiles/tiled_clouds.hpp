@@ -4,9 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <map>
 #include <random>
 #include <span>
 #include <string>
@@ -14,11 +17,14 @@
 #include <vector>
 
 #include "ahm/conformance/clouds.hpp"
+#include "ahm/error.hpp"
 #include "ahm/pointcloud/point_cloud_surface.hpp"
 #include "ahm/tiles/build_tiles.hpp"
 #include "ahm/tiles/tiled_graph.hpp"
+#include "ahm/tiles/tiled_local_maps.hpp"
 #include "ahm/tiles/tiled_log_map.hpp"
 #include "files.hpp"
+#include "support/expect_error.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace ahm::test {
