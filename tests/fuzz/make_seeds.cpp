@@ -89,7 +89,6 @@ void add_meshes(const Seeds& seeds) {
                                                                {"moebius", test::moebius_mesh(12, 1)},
                                                                {"folded", test::folded_strip(5)}};
   for (const auto& [name, mesh] : meshes) {
-    if (mesh.positions.size() > 32 || mesh.faces.size() > 60) continue;
     for (const std::uint8_t flags : {0, 1}) {
       seeds.add("triangles", name + std::to_string(flags), triangles(mesh, flags, false));
       seeds.add("exact", name + std::to_string(flags), triangles(mesh, flags, true));
@@ -108,7 +107,6 @@ void add_polygons(const Seeds& seeds) {
                                                                    {"cube", test::cube_sphere(2)},
                                                                    {"moebius", test::moebius_quads(9, 1)}};
   for (const auto& [name, mesh] : meshes) {
-    if (mesh.vertices() > 39 || mesh.faces() > 59) continue;
     for (const std::uint8_t flags : {0, 1, 32, 33, 64, 65}) {
       std::string bytes = bytes_of(flags, mesh.vertices());
       put_points(bytes, mesh.positions, (flags & 1) == 0);
@@ -127,7 +125,6 @@ void add_clouds(const Seeds& seeds) {
                                     {"sphere", test::even_sphere(120)},
                                     {"moebius", test::moebius_cloud(150)}})
     for (const std::uint8_t flags : {0, 1, 2, 3}) {
-      if (cloud.points.size() > 255) continue;
       std::string bytes = bytes_of(flags, cloud.points.size());
       put_points(bytes, cloud.points, (flags & 1) == 0);
       if ((flags & 2) != 0) put_points(bytes, cloud.normals, (flags & 1) == 0);
