@@ -109,7 +109,7 @@ REQUESTS = {
     "stroke in the middle": """const s = ahm.stage; ahm.picked = [];
         for (let k = 0; k < 30; ++k) { const h = s.pick(s.width / 2 + k, s.height / 2); if (h) ahm.picked.push(h); }
         await ahm.ask_stroke(ahm.picked.map((h) => h.source));""",
-    "value under the pointer": "ahm.panel.tell(ahm.stage.pick(ahm.stage.width / 2, ahm.stage.height / 2));",
+    "value under the pointer": "ahm.panel.show_values(ahm.stage.pick(ahm.stage.width / 2, ahm.stage.height / 2));",
 }
 
 

@@ -60,7 +60,7 @@ tidy-all() {
 # Tests that take half a minute or more each under the sanitizers. Other tests cover the same lines.
 slow=("CholeskyFactor.SolvesAsEigens*" ExactMap.GoesFarAlongTubes ExactMap.IsRefusedWhereNeedlesLoseWindows ExactMap.NamesMeshesOnWhichWindowsDoNotEnd
   FactorFront.IsEigensOfEverySmallFrontAndOfLargeOnes LocalMaps.ApproachTheMapOfTheWholeGraphWithTheMargin
-  LocalMaps.DoNotDependOnThreadsOrOnCompany LocalMaps.RefuseWhatFillsTheMemory March.AgreesWithTheGlobalSolve March.DoesNotDependOnThreads
+  LocalMaps.DoNotDependOnThreadsOrOnOtherSources LocalMaps.RefuseWhatFillsTheMemory March.AgreesWithTheGlobalSolve March.DoesNotDependOnThreads
   March.EndsWhereHeatDistancesAreBeyondAllNumbers March.HasNoHorizon March.TakesSeveralBands Normals.WithNoiseAreNoWorseThanNone
   Renderer.DoesNotDependOnTheNumberOfThreads SphereCloud.ConvergesOnRandomPointsInBothVariants
   StreamedLogMap.ForgetsWhatTheFrontHasPassed StreamedLogMap.GoesOnFromTheEndOfAnyBand)

@@ -182,9 +182,9 @@ Accuracy accuracy(const Shape& shape, const Exact& exact, const std::vector<Poin
 
 // Costs.
 
-const std::vector<std::string> columns{"part",       "shape",        "as",          "vertices",      "choice",
-                                       "mean error", "median error", "95% error",   "largest error", "vector error",
-                                       "build s",    "factor s",     "first map s", "further map s", "batch s each",
+const std::vector<std::string> columns{"part",       "shape",        "as",          "vertices",         "choice",
+                                       "mean error", "median error", "95% error",   "largest error",    "vector error",
+                                       "build s",    "factor s",     "first map s", "additional map s", "batch s each",
                                        "factors MB", "peak MB"};
 
 /// Adds one row: one shape, one backend and one setup.
@@ -206,14 +206,14 @@ void measure(const char* part, const Shape& shape, const Exact& exact, const Set
     const auto map = backend->on_points(solver->solve(sources.back(), options));
     logs.push_back({map.u, map.v});
   }
-  const double further = min_seconds([&] { solver->solve(sources[0], options); });
+  const double additional = min_seconds([&] { solver->solve(sources[0], options); });
   const bool global = setup.strategy == Strategy::global;  // the march has no factors, and a batch saves nothing
   while (sources.size() < 32) sources.push_back(sources[sources.size() - 2]);
   const Cell batch = global ? Cell(min_seconds([&] { solver->solve(sources, options); }) / 32) : Cell();
   const Accuracy error = accuracy(shape, exact, logs);
   table.add({part, shape.name, Backend::name, static_cast<Index>(shape.quads.points.size()), setup.name,
              known(error.mean), known(error.median), known(error.most), known(error.largest), known(error.vector),
-             build, factor, factor + further, further, batch,
+             build, factor, factor + additional, additional, batch,
              global ? Cell(1e-6 * static_cast<double>(solver->operators().statistics().bytes)) : Cell(), known(peak)});
 }
 
@@ -264,7 +264,7 @@ Table backends(const Settings& settings) {
     table.seen +=
         fmt::format("{}{}: median error of distance {:.2g}, first map after {:.2g} s, each additional one {:.2g} s",
                     table.seen.empty() ? "Sphere, " + largest + " vertices: " : "; ", as, rows.mean("median error"),
-                    rows.mean("build s") + rows.mean("first map s"), rows.mean("further map s"));
+                    rows.mean("build s") + rows.mean("first map s"), rows.mean("additional map s"));
   }
   table.seen += fmt::format(". BLAS: {}.", linear_algebra_info().blas);
   return table;

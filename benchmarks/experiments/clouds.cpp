@@ -107,7 +107,7 @@ void measure(const Surface& surface, double noise, Table& table) {
 }  // namespace
 
 Table clouds(const Settings& settings) {
-  Table table({"cloud", "points", "noise", "variant", "mean", "95%", "max", "bounded", "trusted", "95% of trusted"});
+  Table table({"cloud", "points", "noise", "variant", "mean", "95%", "max", "bounded", "kept", "95% of kept"});
   const Index n = settings.toy ? 640 : 10000;
   for (double noise : {0.0, 0.3}) {
     measure(Surface("sphere", test::split_icosphere(n)), noise, table);

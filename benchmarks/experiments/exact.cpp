@@ -64,7 +64,7 @@ ToleranceResult with_tolerance(const Surface& surface, const ExactGeodesics& geo
 }
 
 struct HeatRow {
-  double first = 0, further = 0;
+  double first = 0, additional = 0;
   std::vector<double> errors;
 };
 
@@ -74,8 +74,8 @@ HeatRow with_heat(const Surface& surface, std::span<const Vertex> sources, std::
   row.first = cpu_seconds([&] { solver.emplace(surface.graph()); });
   for (std::size_t s = 0; s < sources.size(); ++s) {
     std::optional<LogMap> map;
-    row.further = cpu_seconds([&] { map.emplace(solver->solve(Source::at_vertex(sources[s]))); });
-    if (s == 0) row.first += row.further;
+    row.additional = cpu_seconds([&] { map.emplace(solver->solve(Source::at_vertex(sources[s]))); });
+    if (s == 0) row.first += row.additional;
     const std::vector<double> errors = vector_errors(surface, exact[s], *map);
     row.errors.insert(row.errors.end(), errors.begin(), errors.end());
   }
@@ -158,7 +158,7 @@ void measure(const Surface& surface, Table& table) {
              cgal_result.seconds,
              cgal_result.difference,
              heat.first,
-             heat.further,
+             heat.additional,
              quantile(heat.errors, 0.5),
              mean(heat.errors),
              quantile(heat.errors, 0.95),
@@ -184,7 +184,7 @@ Table exact_compared(const Settings& settings) {
                "CGAL s",
                "difference / diameter",
                "first heat map s",
-               "further heat map s",
+               "additional heat map s",
                "vector median",
                "vector mean",
                "vector 95%",

@@ -43,15 +43,15 @@ void measure(std::string_view shape, const char* name, const TangentGraph& graph
   methods::Method method;
   const double made = seconds([&] { method = make(); });
   SquareErrors errors;
-  double further = 0;
+  double additional = 0;
   const Index n = graph.size(), sources[] = {n / 7, n / 3, n / 2 + 7};
   for (Index source : sources) {
     methods::Result result;
-    further += seconds([&] { result = method->solve(source); }) / 3;
+    additional += seconds([&] { result = method->solve(source); }) / 3;
     errors.add(graph, source, result);
   }
   table.add({shape, n, name, errors.rms(errors.distance), errors.has_map ? errors.rms(errors.angle) : Cell(),
-             errors.has_map ? errors.rms(errors.map) : Cell(), made, further});
+             errors.has_map ? errors.rms(errors.map) : Cell(), made, additional});
 }
 
 void measure_all(std::string_view shape, const TangentGraph& graph, Table& table) {

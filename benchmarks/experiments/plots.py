@@ -171,7 +171,7 @@ def convergence(rows):
 def variants(rows):
     figure, axes = panels(2, width=4.4)
     lines(axes[0], rows, "distance / longest", "median difference", "shape", logy=True, title="all vertices")
-    lines(axes[1], rows, "distance / longest", "median difference, trusted", "shape", logy=True,
+    lines(axes[1], rows, "distance / longest", "median difference, kept", "shape", logy=True,
           title="where the quality is above 0.5")
     return legend(figure, axes)
 
@@ -261,7 +261,7 @@ def polygons(rows):
 def runtime(rows):
     figure, axes = panels(3, width=3.6)
     methods = ("AHM_a", "AHM_l", "VHM_log")
-    for axis, which in zip(axes, ("first", "further")):
+    for axis, which in zip(axes, ("first", "additional")):
         for method in methods:
             pairs = numbers(rows, "vertices", f"{which} {method} s")
             axis.plot(*zip(*pairs), label=method, **{**look(method), "linestyle": "none"})
@@ -271,10 +271,10 @@ def runtime(rows):
         axes[column != "build s"].plot(*zip(*pairs), label=name, color="#888888", linestyle="none",
                                        marker="+" if column == "build s" else "x", markersize=4)
     for method in methods:
-        pairs = sorted((float(row["vertices"]), float(row[f"first {method} s"]) / float(row[f"further {method} s"]))
+        pairs = sorted((float(row["vertices"]), float(row[f"first {method} s"]) / float(row[f"additional {method} s"]))
                        for row in rows)
         axes[2].plot(*zip(*pairs), **{**look(method), "linestyle": "none"})
-    axes[2].set(title="first / further", ylabel="times")
+    axes[2].set(title="first / additional", ylabel="times")
     for axis in axes:
         axis.set(xlabel="vertices", xscale="log", yscale="log")
     return legend(figure, axes)
@@ -288,8 +288,8 @@ def backends(rows):
         lines(axis, only(rows, shape=shape), "vertices", "median error", "as", logx=True, logy=True, title=shape,
               ylabel="median relative error of distance")
     chosen = only(rows, shape="sphere")
-    for axis, column, title in zip(axes[3:], ("build s", "first map s", "further map s"),
-                                   ("graph", "first map", "further map")):
+    for axis, column, title in zip(axes[3:], ("build s", "first map s", "additional map s"),
+                                   ("graph", "first map", "additional map")):
         lines(axis, chosen, "vertices", column, "as", logx=True, logy=True, title=f"sphere: {title}", ylabel="seconds")
     return legend(figure, axes)
 

@@ -119,17 +119,17 @@ std::optional<double> area_under_curve(const MapErrors& found) {
 
 /// Shares of the vectors: right ones, those of quality >= `trusted_quality`, and the right ones among the latter.
 struct Shares {
-  double right, trusted, right_among_trusted;
+  double right, kept, right_among_kept;
 };
 
 Shares shares_of(const MapErrors& found) {
-  double right_ones = 0, trusted = 0, both = 0;
+  double right_ones = 0, kept = 0, both = 0;
   for (std::size_t k = 0; k < found.quality.size(); ++k) {
-    const bool is_right = found.vector_error[k] < right, is_trusted = found.quality[k] >= trusted_quality;
-    right_ones += is_right, trusted += is_trusted, both += is_right && is_trusted;
+    const bool is_right = found.vector_error[k] < right, is_kept = found.quality[k] >= trusted_quality;
+    right_ones += is_right, kept += is_kept, both += is_right && is_kept;
   }
   const auto all = static_cast<double>(found.quality.size());
-  return {right_ones / all, trusted / all, trusted > 0 ? both / trusted : 1};
+  return {right_ones / all, kept / all, kept > 0 ? both / kept : 1};
 }
 
 void append(MapErrors& all, const MapErrors& one) {
@@ -160,15 +160,15 @@ void measure(const GroundTruth& ground, const ComparedSurface& view, Table& tabl
       });
       const MapErrors found = compare(ground, truths[s], view, *map);
       if (found.quality.empty()) continue;
-      worst = std::min(worst, shares_of(found).right_among_trusted);
+      worst = std::min(worst, shares_of(found).right_among_kept);
       append(all, found);
     }
     if (all.quality.empty()) continue;
-    const auto [is_right, trusted, right_among_trusted] = shares_of(all);
+    const auto [is_right, kept, right_among_kept] = shares_of(all);
     const auto area = area_under_curve(all);
     table.add({ground.name, view.name, size, std::string(to_string(method)), quantile(all.vector_error, 0.5),
                quantile(all.vector_error, 0.95), quantile(all.distance_error, 0.95), is_right,
-               area ? Cell(*area) : Cell(), trusted, right_among_trusted, worst, 1e3 * time / source_count});
+               area ? Cell(*area) : Cell(), kept, right_among_kept, worst, 1e3 * time / source_count});
   }
 }
 
@@ -231,7 +231,7 @@ void measure(const NamedPolygons& mesh, Table& table) {
 
 Table trust(const Settings& settings) {
   Table table({"mesh", "as", "vertices", "method", "vector 50%", "vector 95%", "distance 95%", "right",
-               "area under curve", "trusted", "right among trusted", "the same in the worst map", "ms a map"});
+               "area under curve", "kept", "right among kept", "right among kept, worst map", "ms a map"});
   const Index n = settings.toy ? 640 : 10000;
   measure(Surface("sphere", test::split_icosphere(n)), table);
   measure(Surface("torus", torus(n)), table);

@@ -24,19 +24,19 @@ void measure(const Surface& surface, Table& table) {
   for (Index i = 0; i < adaptive.size(); ++i)
     if (adaptive.status(Vertex(i)) == Status::ok) longest = std::max(longest, adaptive.distance(Vertex(i)));
   for (int ring = 0; ring < ring_count; ++ring) {
-    std::vector<double> all, trusted;
+    std::vector<double> all, kept;
     for (Index i = 0; i < adaptive.size(); ++i) {
       const auto k = static_cast<std::size_t>(i);
       if (ring_of[k] != ring || adaptive.status(Vertex(i)) != Status::ok || localized.status(Vertex(i)) != Status::ok)
         continue;
       const auto a = adaptive.coordinates(Vertex(i)), l = localized.coordinates(Vertex(i));
       all.push_back(std::hypot(a[0] - l[0], a[1] - l[1]) / longest);
-      if (quality[k] >= trusted_quality) trusted.push_back(all.back());
+      if (quality[k] >= trusted_quality) kept.push_back(all.back());
     }
     if (all.empty()) continue;
     table.add({surface.name(), surface.size(), (ring + 0.5) / ring_count, quantile(all, 0.5), mean(all),
-               quantile(all, 0.95), quantile(all, 1), trusted.empty() ? Cell() : Cell(quantile(trusted, 0.5)),
-               static_cast<double>(trusted.size()) / static_cast<double>(all.size())});
+               quantile(all, 0.95), quantile(all, 1), kept.empty() ? Cell() : Cell(quantile(kept, 0.5)),
+               static_cast<double>(kept.size()) / static_cast<double>(all.size())});
   }
 }
 
@@ -44,7 +44,7 @@ void measure(const Surface& surface, Table& table) {
 
 Table variants(const Settings& settings) {
   Table table({"shape", "vertices", "distance / longest", "median difference", "mean difference", "95% difference",
-               "largest difference", "median difference, trusted", "trusted share"});
+               "largest difference", "median difference, kept", "kept share"});
   const Index n = settings.toy ? 600 : 40000;
   measure(Surface("sphere", split_icosphere(n)), table);
   measure(Surface("ellipsoid", ellipsoid(n)), table);
@@ -54,7 +54,7 @@ Table variants(const Settings& settings) {
   table.seen = fmt::format(
       "Median differences, relative to the largest distance: up to {:.2g} where the quality is above 0.5, up to {:.2g} "
       "elsewhere.",
-      table.largest("median difference, trusted"), table.largest("median difference"));
+      table.largest("median difference, kept"), table.largest("median difference"));
   return table;
 }
 

@@ -52,8 +52,8 @@ std::vector<double> measure(Index n, Ordering ordering, const Settings& settings
 }  // namespace
 
 Table cloud_scaling(const Settings& settings) {
-  Table table({"points", "ordering", "graph s", "factor s", "first map s", "total s", "further adaptive s",
-               "further localized s", "u and v alone s", "batch of 64, s each", "batch of u and v alone, s each",
+  Table table({"points", "ordering", "graph s", "factor s", "first map s", "total s", "additional adaptive s",
+               "additional localized s", "u and v only s", "batch of 64, s each", "batch of u and v only, s each",
                "factors MB", "peak MB", "peak MB with the batch", "ok"});
   for (Index n : sizes(settings, 1000, {10000, 100000, 400000}))
     for (const auto& [name, ordering] : {std::pair{"amd", Ordering::amd}, {"metis", Ordering::nested_dissection}}) {

@@ -174,8 +174,8 @@ std::vector<double> by_lu(Index n, Variant variant) {
 }  // namespace
 
 Table direct(const Settings& settings) {
-  Table table({"vertices", "variant", "first map cpu s", "by LU cpu s", "first, times", "further map cpu s",
-               "further by LU cpu s", "further, times", "peak MB", "by LU MB", "memory, times", "apart"});
+  Table table({"vertices", "variant", "first map cpu s", "by LU cpu s", "first, times", "additional map cpu s",
+               "additional by LU cpu s", "additional, times", "peak MB", "by LU MB", "memory, times", "apart"});
   for (const Index n : sizes(settings, 600, {10000, 40000}))
     for (const Variant variant : all_variants) {
       const std::vector<double> ours = in_own_process(3, [&] { return by_elimination(n, variant); }),
@@ -187,8 +187,8 @@ Table direct(const Settings& settings) {
       "By LU first maps take {:.0f} to {:.0f} times as long, additional ones {:.0f} to {:.0f} times; maps differ by up "
       "to "
       "{:.0e}.",
-      table.smallest("first, times"), table.largest("first, times"), table.smallest("further, times"),
-      table.largest("further, times"), table.largest("apart"));
+      table.smallest("first, times"), table.largest("first, times"), table.smallest("additional, times"),
+      table.largest("additional, times"), table.largest("apart"));
   return table;
 }
 

@@ -47,8 +47,8 @@ std::vector<double> measure(Index n, const Settings& settings) {
 }  // namespace
 
 Table mesh_scaling(const Settings& settings) {
-  Table table({"vertices", "graph s", "first map s", "further adaptive s", "further localized s", "u and v alone s",
-               "batch of 64, s each", "batch of u and v alone, s each", "peak MB"});
+  Table table({"vertices", "graph s", "first map s", "additional adaptive s", "additional localized s",
+               "u and v only s", "batch of 64, s each", "batch of u and v only, s each", "peak MB"});
   for (Index n : sizes(settings, 600, {10000, 40000, 160000})) {
     const std::vector<double> numbers = in_own_process(9, [&] { return measure(n, settings); });
     std::vector<Cell> row{static_cast<Index>(numbers[0])};

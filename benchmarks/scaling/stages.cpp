@@ -25,8 +25,16 @@ namespace {
 
 // The lower bound counts bytes that are read and written once, at the speed of a copy, and the operations of the
 // factorizations at the speed of dgemm and zgemm. All else is free.
-constexpr std::array stages{"read",     "graph",     "assemble",         "order and analyze", "factor A",
-                            "factor B", "first map", "further adaptive", "further localized", "write"};
+constexpr std::array stages{"read",
+                            "graph",
+                            "assemble",
+                            "order and analyze",
+                            "factor A",
+                            "factor B",
+                            "first map",
+                            "additional adaptive",
+                            "additional localized",
+                            "write"};
 
 /// Processor time of a stage, and the lower bound from its bytes or operations.
 struct Cost {
@@ -191,7 +199,7 @@ Table stages_of_a_map(const Settings& settings) {
       "{:.0f} vertices take {:.2g} s for the graph, {:.2g} s for both factors and {:.2g} s for each additional map, on "
       "one thread.",
       table.largest("vertices"), slowest("graph"), slowest("factor A") + slowest("factor B"),
-      slowest("further adaptive"));
+      slowest("additional adaptive"));
   return table;
 }
 

@@ -35,7 +35,7 @@ def flat_surfaces(plane):
     }
 
 
-# What C++ has names for and Python has not.
+# Names that only C++ has.
 WORDS_OF_CPP = re.compile(
     r"::|std\b|bad_alloc|nullptr|\bspan\b|\w+Options\b|\boptions\.|operator ?\(|\{(true|false)\}|incompatible function|_core\b"
     r"|\b(Source|CsrGraph|Discretization|NonManifold|Vertex|Row|at_vertex|at_vertices|map_quality|row_begin|face_begin|of_points"
@@ -43,7 +43,7 @@ WORDS_OF_CPP = re.compile(
 
 
 def words_of_cpp(error):
-    """Those in the text of an exception: none should be."""
+    """Names of C++ in the text of an exception; there should be none."""
     return [found.group() for found in WORDS_OF_CPP.finditer(str(error))]
 
 

@@ -90,7 +90,7 @@ def test_transport_keeps_vectors_on_the_plane_and_lengths_on_the_sphere(flat_sur
     length = np.linalg.norm([0, 0, 3.0] - sphere.normals[0] * sphere.normals[0, 2] * 3)
     np.testing.assert_allclose(np.linalg.norm(carried, axis=1), length, rtol=1e-9)
     np.testing.assert_allclose(np.einsum("ij,ij->i", carried, sphere.normals), 0, atol=1e-9)
-    # The same in frames.
+    # Transport of components in the frames.
     local = sphere.frames[0, :2] @ [0, 0, 3.0]
     frames = ahm.transport(sphere, 0, local)
     np.testing.assert_allclose(np.einsum("ia,iax->ix", frames, sphere.frames[:, :2]), carried, atol=1e-12)

@@ -1,4 +1,4 @@
-"""Wrong arguments raise errors that name argument, index and value; none crashes, hangs or passes."""
+"""Wrong arguments raise errors that name argument, index and value; no call crashes, hangs or succeeds."""
 
 import os
 import pickle
@@ -240,7 +240,7 @@ def random_thing(rng):
 
 
 def test_random_arguments_give_results_or_errors(sphere, plane):
-    """Anything may be refused by ValueError or TypeError; what is not is a result of the right shape."""
+    """Each call raises ValueError or TypeError, or returns a result of the right shape."""
     rng = np.random.default_rng(7)
     solver, flat = ahm.LogMapSolver(sphere), ahm.TriangleMesh(*plane)
     m, exact = solver.log_map(0), ahm.ExactGeodesics(flat)
@@ -304,7 +304,7 @@ def test_objects_of_other_packages_are_taken_by_what_they_have(plane, sphere):
 
 
 class Tensor:
-    """As those of Open3D: no `__array__`, and no truth value."""
+    """Like tensors of Open3D: without `__array__` and truth value."""
 
     def __init__(self, values):
         self.values = values

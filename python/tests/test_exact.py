@@ -1,4 +1,4 @@
-"""Exact geodesics from Python: as makers of maps, and as curves."""
+"""Exact geodesics from Python: maps and curves."""
 
 import pickle
 
@@ -171,7 +171,7 @@ def test_points_of_paths_are_points_of_the_inputs_faces(sphere, flat_surfaces):
 def test_paths_pass_over_faces_without_area():
     """Faces whose corners coincide are left out of the triangles, and all others keep their numbers."""
     V, F = ahm.shapes.plane(6, 6)
-    V = np.concatenate([V, V[[7]]])  # row 36 at the place of row 7, joined to it by a sliver
+    V = np.concatenate([V, V[[7]]])  # row 36 is at the position of row 7; a sliver connects them
     around = (F == 7).any(axis=1)
     upper = V[F].mean(axis=1)[:, 1] > 1
     F = np.where((F == 7) & (around & upper)[:, None], 36, F)

@@ -1,4 +1,4 @@
-"""Every example runs, at small size; the page for Python is true."""
+"""Every example runs, at small size; the code on the page for Python works."""
 
 import doctest
 import subprocess

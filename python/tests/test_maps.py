@@ -1,4 +1,4 @@
-"""Log maps from Python: exact where the geometry is flat, whatever the discretization, the source and the method."""
+"""Log maps from Python: exact on flat surfaces, for every discretization, source and method."""
 
 import numpy as np
 import pytest
@@ -15,7 +15,7 @@ def axis_of(surface):
 
 
 def plane_vectors(surface, m, at):
-    """Where rows lie relative to `at`, in the map's own handedness."""
+    """Positions of rows relative to `at`, in the axes of the map."""
     offsets = in_plane(surface, slice(None)) - at
     axes = m.source.axes
     return offsets if axes is None else offsets @ axes[:2, :2].T

@@ -1,4 +1,4 @@
-"""`SurfaceSolver` has the same members, arguments and defaults in C++ and in Python, and makes the maps of the solvers below it."""
+"""`SurfaceSolver` has the same members, arguments and defaults in C++ and in Python, and the results of the solvers that it calls."""
 
 import inspect
 import pickle
@@ -22,7 +22,7 @@ def block(kind, name):
 
 
 def fields(name):
-    """Fields of a struct with their defaults, as Python has them."""
+    """Fields of a struct with their defaults in Python."""
     found = re.findall(r"(\w+)\s*=\s*([^;]*);", block("struct", name))
     return {field: CPP_VALUES[value.strip()] for field, value in found}
 

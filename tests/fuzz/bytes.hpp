@@ -1,5 +1,5 @@
 /// \file
-/// What a fuzzer's bytes stand for.
+/// Numbers and points from the bytes of a fuzzer.
 #pragma once
 
 #include <cmath>
@@ -10,13 +10,14 @@
 #include <exception>
 #include <new>
 #include <string>
+#include <vector>
 
 #include "ahm/error.hpp"
 #include "ahm/types.hpp"
 
 namespace ahm::fuzz {
 
-/// Bytes taken one after the other; zeros behind their end.
+/// Reads bytes in their order; zeros after their end.
 class Bytes {
  public:
   Bytes(const std::uint8_t* data, std::size_t size) : data_(data), left_(size) {}
@@ -30,35 +31,45 @@ class Bytes {
     return number;
   }
   std::uint8_t byte() { return take<std::uint8_t>(); }
-  /// In [0, most].
-  Index number(Index most) { return static_cast<Index>(take<std::uint16_t>() % (static_cast<unsigned>(most) + 1)); }
-  bool is_empty() const { return left_ == 0; }
-
-  /// A coordinate: any double whatever, or (`coarse`) one of a few, so that points meet and fall in line.
+  /// A number in [0, largest].
+  Index number(Index largest) {
+    return static_cast<Index>(take<std::uint16_t>() % (static_cast<unsigned>(largest) + 1));
+  }
+  /// Any double, or (`coarse`) a multiple of 1/4, so that some points are equal or collinear.
   double coordinate(bool coarse) { return coarse ? take<std::int8_t>() / 4.0 : take<double>(); }
   Vec3 point(bool coarse) { return {coordinate(coarse), coordinate(coarse), coordinate(coarse)}; }
+  std::vector<Vec3> points(std::size_t count, bool coarse) {
+    std::vector<Vec3> all(count);
+    for (Vec3& one : all) one = point(coarse);
+    return all;
+  }
+  /// Corners in [0, largest].
+  std::vector<Triangle> triangles(std::size_t count, Index largest) {
+    std::vector<Triangle> all(count);
+    for (Triangle& face : all) face = {number(largest), number(largest), number(largest)};
+    return all;
+  }
 
  private:
   const std::uint8_t* data_;
   std::size_t left_;
 };
 
-/// A law that does not hold: a finding.
+/// Reports a finding if a law does not hold.
 inline void require(bool holds, const char* law) {
   if (holds) return;
   std::fprintf(stderr, "broken: %s\n", law);
   std::abort();
 }
 
-/// Runs the work; refusals that are documented (ahm::Error, with words) are none of our business, everything else ends the
-/// fuzzer.
+/// Calls the function and catches documented exceptions (`ahm::Error` with a message). Any other end is a finding.
 template <class Work>
 int allow_refusals(const Work& work) {
   try {
     work();
   } catch (const Error& error) {
-    require(*error.what() != '\0', "errors have words");
-    require(std::strncmp(error.what(), "PCD files are read by", 21) != 0, "the module that reads PCD is there");
+    require(*error.what() != '\0', "errors have messages");
+    require(std::strncmp(error.what(), "PCD files are read by", 21) != 0, "the module that reads PCD exists");
   } catch (const std::bad_alloc&) {
   }
   return 0;

@@ -1,4 +1,4 @@
-// Exact windows and paths, on meshes of few vertices.
+// Exact maps and paths on meshes with few vertices.
 #include "ahm/surface/exact/exact_geodesics.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "maps.hpp"
@@ -6,7 +6,7 @@
 namespace ahm::fuzz {
 namespace {
 
-SurfacePoint point_of(Bytes& bytes, const Surface& surface, Index faces) {
+SurfacePoint take_point(Bytes& bytes, const Surface& surface, Index faces) {
   if (bytes.byte() % 2 == 0) return Row(bytes.number(static_cast<Index>(surface.positions().size()) - 1));
   const double a = bytes.byte() / 256.0, b = bytes.byte() / 256.0 * (1 - a);
   return FacePoint{bytes.number(faces - 1), {a, b, 1 - a - b}};
@@ -19,9 +19,8 @@ double span_of(const Surface& surface) {
   return span;
 }
 
-/// A path is no shorter than the straight line.
 void check_path(const ExactGeodesics& exact, const exact::GeodesicPath& path) {
-  if (path.status != Status::ok) return require(path.points.empty(), "no points where not ok");
+  if (path.status != Status::ok) return require(path.points.empty(), "paths that are not ok have no points");
   require(std::isfinite(path.length) && path.length >= 0, "a path's length is finite");
   if (path.points.empty()) return;
   const Vec3 a = exact.position(path.points.front()), b = exact.position(path.points.back());
@@ -31,29 +30,26 @@ void check_path(const ExactGeodesics& exact, const exact::GeodesicPath& path) {
 }
 
 void run(Bytes& bytes) {
-  const std::uint8_t way = bytes.byte();
-  std::vector<Vec3> positions(1 + bytes.byte() % 32);
-  for (Vec3& position : positions) position = bytes.point((way & 1) == 0);
-  std::vector<Triangle> faces(1 + bytes.byte() % 60);
-  const auto most = static_cast<Index>(positions.size()) - 1;
-  for (Triangle& face : faces) face = {bytes.number(most), bytes.number(most), bytes.number(most)};
+  const std::uint8_t flags = bytes.byte();
+  const std::vector<Vec3> positions = bytes.points(1 + bytes.byte() % 32, (flags & 1) == 0);
+  const auto faces = bytes.triangles(1 + bytes.byte() % 60, static_cast<Index>(positions.size()) - 1);
   trimesh::MeshOptions options{.threads = 1};
   options.non_manifold = NonManifold::split;
   const auto surface = trimesh::TriangleMeshSurface::build(positions, faces, options);
   const ExactGeodesics exact(surface);
   const auto count = static_cast<Index>(faces.size());
-  const SurfacePoint from = point_of(bytes, surface, count), to = point_of(bytes, surface, count);
+  const SurfacePoint from = take_point(bytes, surface, count), to = take_point(bytes, surface, count);
   allow_refusals([&] {
     ExactMapOptions map_options;
-    if ((way & 2) != 0) map_options.radius = bytes.byte() / 4.0;
-    map_options.frames = (way & 4) != 0;
+    if ((flags & 2) != 0) map_options.radius = bytes.byte() / 4.0;
+    map_options.frames = (flags & 4) != 0;
     check_map(exact.log_map(from, std::nullopt, map_options));
   });
   allow_refusals([&] { check_path(exact, exact.path(std::array{from, to})); });
   allow_refusals([&] { check_path(exact, exact.locally_shortest_path(from, to)); });
   allow_refusals([&] {
-    const SurfacePoint third = point_of(bytes, surface, count);
-    check_path(exact, exact.path(std::array{from, to, third}, (way & 8) != 0));
+    const SurfacePoint third = take_point(bytes, surface, count);
+    check_path(exact, exact.path(std::array{from, to, third}, (flags & 8) != 0));
     const auto loop = exact.path(std::array{from, to, third}, true);
     if (loop.status == Status::ok) (void)exact.shortened(loop.points, true);
   });

@@ -1,4 +1,4 @@
-// Writes the seeds of all fuzzers: make_seeds FOLDER. FOLDER/NAME/... are the seeds of fuzz_NAME.
+// Writes the seeds of all fuzzers: make_seeds FOLDER. The seeds of fuzz_NAME are in FOLDER/NAME.
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -6,6 +6,7 @@
 #include <fstream>
 #include <iostream>
 #include <iterator>
+#include <span>
 #include <string>
 
 #include "ahm/conformance/clouds.hpp"
@@ -45,24 +46,39 @@ std::string bytes_of(Bytes... bytes) {
   return {static_cast<char>(bytes)...};
 }
 
-void put_points(std::string& bytes, const std::vector<Vec3>& points) {
+/// Coordinates as `Bytes::points` reads them: bytes (`coarse`), or doubles.
+void put_points(std::string& bytes, const std::vector<Vec3>& points, bool coarse) {
   for (const Vec3& point : points)
-    for (const double x : point) put(bytes, x);
+    for (const double x : point) coarse ? put(bytes, static_cast<std::int8_t>(std::lround(32 * x))) : put(bytes, x);
 }
 
-/// Quarters, as Bytes::coordinate reads them.
-void put_coarse(std::string& bytes, const std::vector<Vec3>& points) {
-  for (const Vec3& point : points)
-    for (const double x : point) put(bytes, static_cast<std::int8_t>(std::lround(32 * x)));
+void put_corners(std::string& bytes, std::span<const Index> corners) {
+  for (const Index corner : corners) put(bytes, static_cast<std::uint16_t>(corner));
 }
 
-std::string triangles(const test::Mesh& mesh, std::uint8_t way, bool count_from_one) {
+/// CSR arrays of triangles.
+struct Polygons {
+  explicit Polygons(const std::vector<Triangle>& faces) {
+    for (const Triangle& face : faces) {
+      corners.insert(corners.end(), face.begin(), face.end());
+      begin.push_back(static_cast<Offset>(corners.size()));
+    }
+  }
+  std::vector<Offset> begin{0};
+  std::vector<Index> corners;
+};
+
+/// Numbers in decimal digits.
+std::string words_of(const Vec3& p) {
+  return std::to_string(p[0]) + " " + std::to_string(p[1]) + " " + std::to_string(p[2]) + "\n";
+}
+
+std::string triangles(const test::Mesh& mesh, std::uint8_t flags, bool count_from_one) {
   const std::uint8_t less = count_from_one ? 1 : 0;
-  std::string bytes = bytes_of(way, mesh.positions.size() - less);
-  (way & 1) == 0 ? put_coarse(bytes, mesh.positions) : put_points(bytes, mesh.positions);
+  std::string bytes = bytes_of(flags, mesh.positions.size() - less);
+  put_points(bytes, mesh.positions, (flags & 1) == 0);
   bytes += bytes_of(mesh.faces.size() - less);
-  for (const Triangle& face : mesh.faces)
-    for (const Index corner : face) put(bytes, static_cast<std::uint16_t>(corner));
+  for (const Triangle& face : mesh.faces) put_corners(bytes, face);
   return bytes + std::string(40, '\1');
 }
 
@@ -73,15 +89,13 @@ void add_meshes(const Seeds& seeds) {
                                                                {"moebius", test::moebius_mesh(12, 1)},
                                                                {"folded", test::folded_strip(5)}};
   for (const auto& [name, mesh] : meshes) {
-    if (mesh.positions.size() > 32 || mesh.faces.size() > 60) continue;
-    for (const std::uint8_t way : {0, 1}) {
-      seeds.add("triangles", name + std::to_string(way), triangles(mesh, way, false));
-      seeds.add("exact", name + std::to_string(way), triangles(mesh, way, true));
+    for (const std::uint8_t flags : {0, 1}) {
+      seeds.add("triangles", name + std::to_string(flags), triangles(mesh, flags, false));
+      seeds.add("exact", name + std::to_string(flags), triangles(mesh, flags, true));
     }
     std::string bytes = bytes_of(0, mesh.positions.size(), mesh.faces.size());
     for (std::size_t i = 0; i <= mesh.positions.size(); ++i) put(bytes, static_cast<std::int8_t>(i % 3));
-    for (const Triangle& face : mesh.faces)
-      for (const Index corner : face) put(bytes, static_cast<std::uint16_t>(corner));
+    for (const Triangle& face : mesh.faces) put_corners(bytes, face);
     seeds.add("lengths", name, bytes + std::string(20, '\1'));
   }
 }
@@ -93,16 +107,15 @@ void add_polygons(const Seeds& seeds) {
                                                                    {"cube", test::cube_sphere(2)},
                                                                    {"moebius", test::moebius_quads(9, 1)}};
   for (const auto& [name, mesh] : meshes) {
-    if (mesh.vertices() > 39 || mesh.faces() > 59) continue;
-    for (const std::uint8_t way : {0, 1, 32, 33, 64, 65}) {
-      std::string bytes = bytes_of(way, mesh.vertices());
-      (way & 1) == 0 ? put_coarse(bytes, mesh.positions) : put_points(bytes, mesh.positions);
+    for (const std::uint8_t flags : {0, 1, 32, 33, 64, 65}) {
+      std::string bytes = bytes_of(flags, mesh.vertices());
+      put_points(bytes, mesh.positions, (flags & 1) == 0);
       bytes += bytes_of(mesh.faces());
       for (Index f = 0; f < mesh.faces(); ++f) {
         bytes += bytes_of(mesh.face(f).size());
-        for (const Index corner : mesh.face(f)) put(bytes, static_cast<std::uint16_t>(corner));
+        put_corners(bytes, mesh.face(f));
       }
-      seeds.add("polygons", name + std::to_string(way), bytes + std::string(20, '\1'));
+      seeds.add("polygons", name + std::to_string(flags), bytes + std::string(20, '\1'));
     }
   }
 }
@@ -111,28 +124,26 @@ void add_clouds(const Seeds& seeds) {
   for (const auto& [name, cloud] : {std::pair<std::string, test::Cloud>{"flat", test::flat_cloud(80)},
                                     {"sphere", test::even_sphere(120)},
                                     {"moebius", test::moebius_cloud(150)}})
-    for (const std::uint8_t way : {0, 1, 2, 3}) {
-      if (cloud.points.size() > 255) continue;
-      std::string bytes = bytes_of(way, cloud.points.size());
-      for (const auto* part : {&cloud.points, &cloud.normals})
-        if (part == &cloud.points || (way & 2) != 0)
-          (way & 1) == 0 ? put_coarse(bytes, *part) : put_points(bytes, *part);
-      seeds.add("cloud", name + std::to_string(way), bytes + std::string(20, '\1'));
+    for (const std::uint8_t flags : {0, 1, 2, 3}) {
+      std::string bytes = bytes_of(flags, cloud.points.size());
+      put_points(bytes, cloud.points, (flags & 1) == 0);
+      if ((flags & 2) != 0) put_points(bytes, cloud.normals, (flags & 1) == 0);
+      seeds.add("cloud", name + std::to_string(flags), bytes + std::string(20, '\1'));
     }
 }
 
 void add_graphs(const Seeds& seeds) {
-  // A wheel: each spoke and each piece of the rim an edge of weight and length 1.
-  for (const std::uint8_t way : {0, 2}) {
+  // A wheel. Spokes and edges of the rim have weight and length 1.
+  for (const std::uint8_t flags : {0, 2}) {
     const int rim = 8;
-    std::string bytes = bytes_of(way, rim, 2 * rim);
+    std::string bytes = bytes_of(flags, rim, 2 * rim);
     const auto add_edge = [&](int a, int b, int direction) {
       put(bytes, static_cast<std::uint16_t>(a)), put(bytes, static_cast<std::uint16_t>(b));
       bytes += bytes_of(4, 4, direction, 0);
-      if (way == 2) bytes += bytes_of(a % 2);
+      if (flags == 2) bytes += bytes_of(a % 2);
     };
     for (int k = 0; k < rim; ++k) add_edge(0, 1 + k, 32 * k), add_edge(1 + k, 1 + (k + 1) % rim, 16 * k);
-    seeds.add("solver", "wheel" + std::to_string(way), bytes + std::string(rim + 1, '\4') + std::string(20, '\1'));
+    seeds.add("solver", "wheel" + std::to_string(flags), bytes + std::string(rim + 1, '\4') + std::string(20, '\1'));
   }
   // Two vertices on a line.
   seeds.add("rows", "pair", bytes_of(6, 0, 2, 1, 1, 1, 0, 4, 4, 4, -4, 4, 4, 4, 4) + std::string(20, '\1'));
@@ -148,38 +159,30 @@ io::Table table_of(const std::vector<Vec3>& points, const std::vector<Vec3>& nor
 void add_files(const Seeds& seeds) {
   const test::Cloud cloud = test::even_sphere(12);
   const test::Mesh mesh = test::icosphere(1);
-  std::vector<Offset> begin{0};
-  std::vector<Index> corners;
-  for (const Triangle& face : mesh.faces) {
-    corners.insert(corners.end(), face.begin(), face.end());
-    begin.push_back(static_cast<Offset>(corners.size()));
-  }
+  const Polygons polygons(mesh.faces);
   for (const bool text : {false, true}) {
     io::Table table = table_of(mesh.positions, mesh.positions);
-    table.faces = {begin, corners};
+    table.faces = {polygons.begin, polygons.corners};
     table.text = text;
     io::write(seeds.file("ply", text ? "text.ply" : "binary.ply"), table);
   }
   io::Table table = table_of(mesh.positions, mesh.positions);
-  table.faces = {begin, corners};
+  table.faces = {polygons.begin, polygons.corners};
   io::write(seeds.file("vtp", "appended.vtp"), table);
   io::write(seeds.file("csv", "cloud.csv"), table_of(cloud.points, cloud.normals));
-  const std::vector<io::MeshPart> parts{{.name = "ball", .points = mesh.positions, .faces = {begin, corners}}};
+  const std::vector<io::MeshPart> parts{
+      {.name = "ball", .points = mesh.positions, .faces = {polygons.begin, polygons.corners}}};
   io::write_textured(seeds.file("glb", "ball.glb"), parts);
   std::string xyz, obj = "# a mesh\n", off = "OFF\n12 20 0\n", stl = "solid ball\n";
   for (const Vec3& p : mesh.positions) {
-    const std::string words = std::to_string(p[0]) + " " + std::to_string(p[1]) + " " + std::to_string(p[2]) + "\n";
-    xyz += words, off += words, obj += "v " + words;
+    xyz += words_of(p), off += words_of(p), obj += "v " + words_of(p);
   }
   for (const Triangle& face : mesh.faces) {
     off += "3 " + std::to_string(face[0]) + " " + std::to_string(face[1]) + " " + std::to_string(face[2]) + "\n";
     obj += "f " + std::to_string(face[0] + 1) + "/1/1 " + std::to_string(face[1] + 1) + " " +
            std::to_string(face[2] - 12) + "\n";
     stl += "facet normal 0 0 1\nouter loop\n";
-    for (const Index corner : face) {
-      const Vec3& p = mesh.positions[corner];
-      stl += "vertex " + std::to_string(p[0]) + " " + std::to_string(p[1]) + " " + std::to_string(p[2]) + "\n";
-    }
+    for (const Index corner : face) stl += "vertex " + words_of(mesh.positions[corner]);
     stl += "endloop\nendfacet\n";
   }
   seeds.add("xyz", "ball.xyz", xyz);
@@ -196,7 +199,7 @@ void add_files(const Seeds& seeds) {
   seeds.add("stl", "binary.stl", binary);
 }
 
-/// A square, as text and big-endian, and as XML.
+/// A square and triangles: as text, big-endian, and as XML.
 void add_vtk(const Seeds& seeds) {
   const std::string head = "# vtk DataFile Version 3.0\nt\n";
   seeds.add("vtk", "text.vtk",
@@ -238,7 +241,7 @@ void add_las(const Seeds& seeds) {
   seeds.add("las", "two.las", las);
 }
 
-/// Two points with a color: text, binary, and compressed, which here is one run of bytes as they are.
+/// Two points with a color: text, binary, and compressed to one run of unchanged bytes.
 void add_pcd(const Seeds& seeds) {
   const std::string head =
       "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z rgb\nSIZE 4 4 4 4\nTYPE F F F U\nCOUNT 1 1 1 1\nWIDTH 2\nHEIGHT 1\n"
@@ -250,11 +253,11 @@ void add_pcd(const Seeds& seeds) {
   std::string packed = head + "binary_compressed\n";
   put(packed, static_cast<std::uint32_t>(records.size() + 1));
   put(packed, static_cast<std::uint32_t>(records.size()));
-  packed += static_cast<char>(records.size() - 1);  // LZF: a run of as many bytes and one
+  packed += static_cast<char>(records.size() - 1);  // LZF: the length of the run, minus 1
   seeds.add("pcd", "compressed.pcd", packed + records);
 }
 
-/// Points of each format that is streamed, behind the number of the format: files of `seeds` without faces.
+/// Files without faces of the formats that are streamed, after the number of the format (points.cpp).
 void add_points(const Seeds& seeds) {
   const test::Cloud cloud = test::even_sphere(12);
   io::Table table = table_of(cloud.points, cloud.normals);
@@ -308,8 +311,7 @@ void add_command_lines(const Seeds& seeds) {
       "decal\nm.obj\n--image\ni.png\n--size\n1e-3\n--source\n1\n-o\nd.ply",
       "stroke\nm.obj\n--help",
   };
-  int number = 0;
-  for (const char* line : lines) seeds.add("command_line", std::to_string(number++), line);
+  for (std::size_t k = 0; k < std::size(lines); ++k) seeds.add("command_line", std::to_string(k), lines[k]);
 }
 
 }  // namespace
@@ -317,17 +319,9 @@ void add_command_lines(const Seeds& seeds) {
 int main(int argc, char** argv) try {
   if (argc != 2) throw std::runtime_error("make_seeds FOLDER");
   const Seeds seeds(argv[1]);
-  add_meshes(seeds);
-  add_polygons(seeds);
-  add_clouds(seeds);
-  add_graphs(seeds);
-  add_files(seeds);
-  add_las(seeds);
-  add_pcd(seeds);
-  add_vtk(seeds);
-  add_gltf(seeds);
-  add_points(seeds);
-  add_command_lines(seeds);
+  for (const auto add : {add_meshes, add_polygons, add_clouds, add_graphs, add_files, add_las, add_pcd, add_vtk,
+                         add_gltf, add_points, add_command_lines})
+    add(seeds);
   return 0;
 } catch (const std::exception& error) {
   std::cerr << error.what() << '\n';

@@ -1,4 +1,4 @@
-// A stream of points, on any bytes: of what can be read whole it hands over the same points, packed with gzip or not.
+// Streams of points from arbitrary bytes, also as gzip. They contain the points that the reader of the whole file returns.
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -17,23 +17,19 @@
 namespace ahm::fuzz {
 namespace {
 
-struct Points {
-  std::vector<Vec3> points;
-  bool have_normals;
-};
-
-Points stream(const std::filesystem::path& path) {
+std::vector<Vec3> stream(const std::filesystem::path& path) {
   io::PointStream file(path, path.parent_path());
-  Points all{std::vector<Vec3>(std::min<std::uint64_t>(file.size(), 100000)), file.has_normals()};
-  // In two parts, and again from the beginning.
-  const std::span<Vec3> room(all.points);
+  (void)file.has_normals();
+  std::vector<Vec3> all(std::min<std::uint64_t>(file.size(), 100000));
+  // In two parts, and again from the start.
+  const std::span<Vec3> room(all);
   std::size_t count = file.read(room.first(room.size() / 2));
   count += file.read(room.subspan(count));
-  require(count == room.size(), "as many points as were said");
+  require(count == room.size(), "as many points as the size of the stream");
   std::vector<Vec3> first(std::min<std::size_t>(2, count));
   file.rewind();
   require(file.read(first) == first.size(), "as many points again");
-  require(first.empty() || std::memcmp(first.data(), all.points.data(), first.size() * sizeof(Vec3)) == 0,
+  require(first.empty() || std::memcmp(first.data(), all.data(), first.size() * sizeof(Vec3)) == 0,
           "the same points again");
   return all;
 }
@@ -49,23 +45,23 @@ void check(const io::Format& format, const std::string& bytes) {
       if (io::is_gzip(in)) io::gunzip(in);
       whole = format.read(in);
     });
-  std::optional<Points> parts;
+  std::optional<std::vector<Vec3>> parts;
   allow_refusals([&] { parts = stream(path); });
   if (!whole || !parts || whole->points.size() > 100000) return;
-  require(parts->points.size() == whole->points.size(), "as many points as read whole");
-  require(std::equal(parts->points.begin(), parts->points.end(), whole->points.begin(),
+  require(parts->size() == whole->points.size(), "as many points as in the whole file");
+  require(std::equal(parts->begin(), parts->end(), whole->points.begin(),
                      [](const Vec3& a, const Vec3& b) {
                        for (int c = 0; c < 3; ++c)
                          if (!(a[c] == b[c] || (std::isnan(a[c]) && std::isnan(b[c])))) return false;
                        return true;
                      }),
-          "the same points as read whole");
+          "the same points as in the whole file");
 }
 
 }  // namespace
 }  // namespace ahm::fuzz
 
-/// The first byte says which format.
+/// The first byte chooses the format.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace ahm;
   if (size == 0) return 0;

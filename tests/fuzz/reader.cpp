@@ -1,4 +1,4 @@
-// A reader of files, on any bytes.
+// Readers of files, on arbitrary bytes.
 #include <string>
 
 #include "bytes.hpp"
@@ -15,7 +15,7 @@ void check(const io::Geometry& g) {
   for (const io::Property& property : g.properties) require(property.values.size() == n, "one value per point");
   for (std::size_t f = 0; f < g.face_count(); ++f) (void)g.face(f).size();
   if (!g.face_begin.empty())
-    require(static_cast<std::size_t>(g.face_begin.back()) == g.face_vertices.size(), "faces hold all corners");
+    require(static_cast<std::size_t>(g.face_begin.back()) == g.face_vertices.size(), "faces contain all corners");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The solver, on random graphs that keep the laws: any weights, parallel edges, reflections, several components.
+// The solver on valid graphs with arbitrary weights, parallel edges, reflections and several components.
 #include <numbers>
 
 #include "ahm/graph/csr_graph.hpp"
@@ -14,7 +14,7 @@ struct Edge {
   bool mirrored;
 };
 
-std::vector<Edge> edges_of(Bytes& bytes, Index n, bool coarse, bool reflections) {
+std::vector<Edge> take_edges(Bytes& bytes, Index n, bool coarse, bool reflections) {
   std::vector<Edge> edges(static_cast<std::size_t>(bytes.byte() % 64));
   for (Edge& e : edges) {
     e.from = bytes.number(n - 1), e.to = bytes.number(n - 1);
@@ -28,28 +28,28 @@ std::vector<Edge> edges_of(Bytes& bytes, Index n, bool coarse, bool reflections)
   return edges;
 }
 
-/// R_ij takes vectors in the frame of j to that of i.
-void add(CsrGraphData& g, const Edge& e, bool forth) {
+/// Adds an edge to the row of its first (`forward`) or second vertex. R_ij maps vectors in the frame of j to the frame of i.
+void add(CsrGraphData& g, const Edge& e, bool forward) {
   const double c = std::cos(e.turn), s = std::sin(e.turn);
-  g.neighbors.push_back(forth ? e.to : e.from);
+  g.neighbors.push_back(forward ? e.to : e.from);
   g.weights.push_back(e.weight);
-  const double direction = forth ? e.direction : e.direction + 1;
+  const double direction = forward ? e.direction : e.direction + 1;
   g.logs.insert(g.logs.end(), {e.length * std::cos(direction), e.length * std::sin(direction)});
   if (g.kind == TransportKind::rotation2)
-    g.transports.insert(g.transports.end(), {c, forth ? s : -s});
+    g.transports.insert(g.transports.end(), {c, forward ? s : -s});
   else if (e.mirrored)
     g.transports.insert(g.transports.end(), {c, s, s, -c});  // its own inverse
   else
-    g.transports.insert(g.transports.end(), {c, forth ? -s : s, forth ? s : -s, c});
+    g.transports.insert(g.transports.end(), {c, forward ? -s : s, forward ? s : -s, c});
 }
 
-CsrGraph graph_of(Bytes& bytes) {
-  const std::uint8_t way = bytes.byte();
-  const bool coarse = (way & 1) == 0;
+CsrGraph take_graph(Bytes& bytes) {
+  const std::uint8_t flags = bytes.byte();
+  const bool coarse = (flags & 1) == 0;
   CsrGraphData g;
-  g.kind = (way & 2) == 0 ? TransportKind::rotation2 : TransportKind::block;
+  g.kind = (flags & 2) == 0 ? TransportKind::rotation2 : TransportKind::block;
   const auto n = static_cast<Index>(1 + bytes.byte() % 24);
-  const std::vector<Edge> edges = edges_of(bytes, n, coarse, g.kind == TransportKind::block);
+  const std::vector<Edge> edges = take_edges(bytes, n, coarse, g.kind == TransportKind::block);
   g.row_begin = {0};
   for (Index i = 0; i < n; ++i) {
     for (const Edge& e : edges) {
@@ -70,7 +70,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace ahm;
   return fuzz::allow_refusals([&] {
     fuzz::Bytes bytes(data, size);
-    const CsrGraph graph = fuzz::graph_of(bytes);
+    const CsrGraph graph = fuzz::take_graph(bytes);
     validate(graph);
     LocalMapOptions local;
     local.heat.threads = 1;

@@ -1,173 +1,123 @@
-// A map over tiles is the marched map of the graph in memory, whatever memory the tiles may take.
-#include <gtest/gtest.h>
-
-#include <cstdio>
-#include <map>
-
-#include "ahm/error.hpp"
-#include "ahm/tiles/tiled_log_map.hpp"
-#include "csv_lines.hpp"
-#include "map_rows.hpp"
-#include "support/expect_error.hpp"
+// Maps over tiles have the bits of the marched map in memory, for every limit of the memory.
 #include "tiled_clouds.hpp"
 
 namespace ahm::test {
 namespace {
 
-using tiles::ArrayFile;
-using tiles::Manifest;
-using tiles::TiledGraph;
-
-void expect_same_map(const TiledCloud& cloud, Row row, Variant variant, double radius) {
-  const auto surface = pointcloud::PointCloudSurface::build(cloud.points, {}, {.parts_apart = false});
+void expect_same_map(const TiledCloud& cloud, const Surface& surface, Row row, Variant variant, double radius) {
   const Vertex vertex = surface.rows().vertex(row).value();
   const LogMap expected = LogMapSolver(surface.graph(), {.variant = variant, .strategy = Strategy::march})
                               .solve(Source::at_vertex(vertex), {.radius = radius});
   for (std::size_t memory : {std::size_t{1} << 16, std::size_t{1} << 30}) {
-    const TiledGraph graph(cloud.tiles, memory);
+    const TiledGraph graph = cloud.graph(memory);
     ASSERT_EQ(graph.vertex_of_row(row), vertex);
-    tiles::TiledMapOptions options{.radius = radius, .memory = memory};
-    options.heat.variant = variant;
-    const auto folder = cloud.folder.directory() / "map";
-    const auto summary = write_log_map(graph, Source::at_vertex(vertex), folder, options);
+    const auto summary = write_log_map(graph, Source::at_vertex(vertex), cloud.file("map"),
+                                       {.heat = {.variant = variant}, .radius = radius, .memory = memory});
     EXPECT_EQ(summary.march.bands, expected.march().bands);
     EXPECT_EQ(summary.ok, expected.count(Status::ok));
     EXPECT_EQ(summary.releases > 0, memory < 1 << 20);
     EXPECT_EQ(summary.spills > 0, memory < 1 << 20);
-    const MapRows rows(graph, folder);
-    EXPECT_TRUE(same_bits<double>(rows.coordinates, expected.coordinates()));
-    EXPECT_TRUE(same_bits<double>(rows.distance, expected.distances()));
-    EXPECT_TRUE(same_bits<double>(rows.spread, expected.spread()));
-    EXPECT_TRUE(std::equal(rows.status.begin(), rows.status.end(), expected.status().begin(), expected.status().end()));
+    const MapArrays found(graph, cloud.file("map"));
+    EXPECT_TRUE(same_bits<double>(found.coordinates, expected.coordinates()));
+    EXPECT_TRUE(same_bits<double>(found.distance, expected.distances()));
+    EXPECT_TRUE(same_bits<double>(found.spread, expected.spread()));
+    EXPECT_TRUE(std::ranges::equal(found.status, expected.status()));
   }
+}
+
+/// A row of tile 2 whose one-ring extends to other tiles.
+Row row_at_border(const TiledGraph& graph) {
+  Index vertex = graph.first_vertex(2);
+  const auto leaves_tile = [&](Index j) { return graph.tile_of(j) != 2; };
+  while (std::ranges::none_of(graph.star(vertex).neighbors, leaves_tile)) ++vertex;
+  const auto rows = graph.rows(2);
+  return Row(rows.rows[rows.begin[vertex - graph.first_vertex(2)]]);
 }
 
 TEST(TiledLogMap, HasTheBitsOfTheMapInMemory) {
   const TiledCloud cloud(two_hills(130, 60), {.tile_points = 1500});
-  cloud.build();
-  const double everything = std::numeric_limits<double>::infinity();
-  expect_same_map(cloud, Row(0), Variant::adaptive, everything);
-  expect_same_map(cloud, Row(130 * 65 + 65), Variant::localized, everything);
-  expect_same_map(cloud, Row(130 * 65 + 65), Variant::adaptive, 40);
+  const auto surface = cloud.surface();
+  const Row center(130 * 65 + 65);
+  expect_same_map(cloud, surface, Row(0), Variant::adaptive, everything);
+  expect_same_map(cloud, surface, center, Variant::localized, everything);
+  expect_same_map(cloud, surface, center, Variant::adaptive, 40);
+  expect_same_map(cloud, surface, row_at_border(cloud.graph()), Variant::adaptive, everything);
 }
 
-/// Of distances alone: those of the localized map, to the bit, and nothing else on disk.
-TEST(TiledLogMap, DistancesAloneAreThoseOfTheLocalizedMap) {
+TEST(TiledLogMap, HasTheBitsOfTheMapInMemoryWithReflections) {
+  const TiledCloud cloud(moebius_cloud(12'000).points, {.tile_points = 1500});
+  expect_same_map(cloud, cloud.surface(), Row(7), Variant::adaptive, everything);
+}
+
+/// Without coordinates a map stores the distances of the localized variant, whatever `variant` is, and nothing else.
+TEST(TiledLogMap, WithoutCoordinatesHasTheDistancesOfTheLocalizedVariant) {
   const TiledCloud cloud(two_hills(70, 40), {.tile_points = 600});
-  cloud.build();
-  const TiledGraph graph(cloud.tiles, 1 << 30);
+  const TiledGraph graph = cloud.graph();
   const Vertex vertices[] = {graph.vertex_of_row(Row(11)).value(), graph.vertex_of_row(Row(70 * 35)).value()};
-  const auto folder = cloud.folder.directory() / "map", alone = cloud.folder.directory() / "distance";
-  for (double radius : {std::numeric_limits<double>::infinity(), 20.0})
+  const Source source = Source::at_vertices(vertices);
+  const auto folder = cloud.file("map"), distances = cloud.file("distances"), csv = cloud.file("distances.csv");
+  for (double radius : {everything, 20.0})
     for (std::size_t memory : {std::size_t{1} << 14, std::size_t{1} << 30}) {
       tiles::TiledMapOptions options{.radius = radius, .memory = memory};
       options.heat.variant = Variant::localized;
-      const auto expected = write_log_map(graph, Source::at_vertices(vertices), folder, options);
+      const auto expected = write_log_map(graph, source, folder, options);
       options.coordinates = false;
-      options.heat.variant = Variant::adaptive;  // means nothing then
-      const auto found = write_log_map(graph, Source::at_vertices(vertices), alone, options);
+      options.heat.variant = Variant::adaptive;
+      const auto found = write_log_map(graph, source, distances, options);
       EXPECT_EQ(found.ok, expected.ok);
       EXPECT_EQ(found.farthest, expected.farthest);
       EXPECT_EQ(found.march.solved, expected.march.solved);
-      for (std::size_t t = 0; t < graph.tiles(); ++t) {
-        const ArrayFile a(Manifest::file(folder, "map", t), "map"), b(Manifest::file(alone, "map", t), "map");
-        EXPECT_TRUE(test::same_bits(a.get<double>("distance"), b.get<double>("distance")));
-        EXPECT_TRUE(test::same_bits(a.get<std::uint8_t>("status"), b.get<std::uint8_t>("status")));
-        expect_error<IoError>([&] { b.get<double>("coordinates"); }, "no array 'coordinates'");
-      }
+      const MapArrays a(graph, folder), b(graph, distances, false);
+      EXPECT_TRUE(same_bits<double>(a.distance, b.distance));
+      EXPECT_EQ(a.status, b.status);
+      for (std::size_t t = 0; t < graph.tiles(); ++t)
+        EXPECT_FALSE(map_file(distances, t).has("coordinates") || map_file(distances, t).has("spread"));
+      expect_error<IoError>([&] { map_file(distances, 0).get<double>("coordinates"); }, "'coordinates'");
     }
-  const auto csv = cloud.folder.directory() / "distance.csv";
-  write_rows(graph, alone, csv);
-  std::map<int, std::string> rows = csv_lines(csv, "row,distance,status");
+  write_rows(graph, distances, csv);
+  std::map<int, std::string> rows = csv_rows(csv, "row,distance,status");
   EXPECT_EQ(rows[11], ",0,ok");
   EXPECT_EQ(rows.size(), cloud.points.size());
 }
 
-TEST(TiledLogMap, HasThemWithReflections) {
-  TiledCloud cloud(moebius_cloud(12'000).points, {.tile_points = 1500});
-  cloud.build();
-  expect_same_map(cloud, Row(7), Variant::adaptive, std::numeric_limits<double>::infinity());
-}
-
-/// The source's own star is cut by the border of two tiles.
-TEST(TiledLogMap, HasThemWhereABorderGoesThroughTheSource) {
-  const TiledCloud cloud(two_hills(130, 60), {.tile_points = 1500});
-  cloud.build();
-  Row row(0);
-  {
-    const TiledGraph graph(cloud.tiles, 1 << 30);
-    Index vertex = graph.first_vertex(2);
-    const auto leaves = [&] {
-      for (Index j : graph.star(vertex).neighbors)
-        if (graph.tile_of(j) != 2) return true;
-      return false;
-    };
-    while (!leaves()) ++vertex;
-    const auto rows = graph.rows(2);
-    row = Row(rows.rows[rows.begin[vertex - graph.first_vertex(2)]]);
-  }
-  expect_same_map(cloud, row, Variant::adaptive, std::numeric_limits<double>::infinity());
-}
-
-/// Heat alone may be below the straight line from the source, rows never are: as those of the surface in memory.
+/// Distances of the map may be below the straight-line distance to the source. Rows of tiles and of surfaces are raised to
+/// it; those that are raised beyond the radius have no map.
 TEST(TiledLogMap, HasTheRowsOfTheSurface) {
   const TiledCloud cloud(hills(60), {.tile_points = 1000});
-  cloud.build();
-  const auto surface = pointcloud::PointCloudSurface::build(cloud.points, {}, {.parts_apart = false});
-  const Vertex vertex = surface.rows().vertex(Row(0)).value();
-  const LogMap map = LogMapSolver(surface.graph(), {.strategy = Strategy::march}).solve(Source::at_vertex(vertex));
-  const RowLogMap expected = surface.to_rows(map);
-  const TiledGraph graph(cloud.tiles, 1 << 30);
-  const auto folder = cloud.folder.directory() / "map", csv = cloud.folder.directory() / "map.csv";
-  write_log_map(graph, Source::at_vertex(vertex), folder, {});
-  write_rows(graph, folder, csv);
-  std::ifstream file(csv);
-  std::string line;
-  std::getline(file, line);
-  Index raised = 0;
-  while (std::getline(file, line)) {
-    int row = 0;
-    double u = 0, v = 0, distance = 0;
-    ASSERT_EQ(std::sscanf(line.c_str(), "%d,%lf,%lf,%lf", &row, &u, &v, &distance), 4) << line;
-    const auto r = static_cast<std::size_t>(row);
-    EXPECT_EQ(u, expected.u[r]);
-    EXPECT_EQ(v, expected.v[r]);
-    EXPECT_NEAR(distance, expected.distance[r], 1e-13 * 85) << row;
-    if (distance > map.distance(*expected.vertex[r]) + 1e-6) ++raised;
-  }
-  EXPECT_GT(raised, 0);
-}
-
-/// Where the straight line raises a row beyond the radius it has none of the map.
-TEST(TiledLogMap, HasTheRowsOfTheSurfaceAsFarAsTheRadius) {
-  const TiledCloud cloud(hills(60), {.tile_points = 1000});
-  cloud.build();
-  const auto surface = pointcloud::PointCloudSurface::build(cloud.points, {}, {.parts_apart = false});
+  const auto surface = cloud.surface();
+  const TiledGraph graph = cloud.graph();
   const Source source = Source::at_vertex(surface.rows().vertex(Row(0)).value());
   const LogMapSolver solver(surface.graph(), {.strategy = Strategy::march});
-  const LogMap whole = solver.solve(source);
-  const RowLogMap all = surface.to_rows(whole);
+  const LogMap map = solver.solve(source);
+  const RowLogMap expected = surface.to_rows(map);
+  const auto csv = cloud.file("map.csv");
+  const auto rows_of = [&](double radius, bool coordinates) {
+    const auto ok = write_log_map(graph, source, cloud.file("map"), {.radius = radius, .coordinates = coordinates}).ok;
+    write_rows(graph, cloud.file("map"), csv);
+    return ok;
+  };
+  rows_of(everything, true);
   std::size_t raised = 0;
-  const auto gain = [&](std::size_t r) { return all.distance[r] - whole.distance(*all.vertex[r]); };
-  for (std::size_t r = 0; r < all.distance.size(); ++r)
-    if (gain(r) > gain(raised)) raised = r;
-  ASSERT_GT(gain(raised), 1e-6);
-  const double radius = all.distance[raised] - 0.5 * gain(raised);
-  const RowLogMap expected = surface.to_rows(solver.solve(source, {.radius = radius}));
-  ASSERT_EQ(expected.status[raised], Status::beyond_radius);
-
-  const TiledGraph graph(cloud.tiles, 1 << 30);
-  const auto folder = cloud.folder.directory() / "map", csv = cloud.folder.directory() / "map.csv";
-  for (const bool coordinates : {true, false}) {
-    tiles::TiledMapOptions options{.radius = radius, .coordinates = coordinates};
-    const auto summary = write_log_map(graph, source, folder, options);
-    write_rows(graph, folder, csv);
-    if (!coordinates) break;  // those of the localized map
-    EXPECT_GT(summary.ok, std::count(expected.status.begin(), expected.status.end(), Status::ok));
-    for (const auto& [row, line] : csv_lines(csv, "row,u,v,distance,spread,status"))
-      EXPECT_TRUE(line.ends_with("," + std::string(to_string(expected.status[static_cast<std::size_t>(row)])))) << line;
+  const auto rise = [&](std::size_t r) { return expected.distance[r] - map.distance(*expected.vertex[r]); };
+  for (const auto& [row, line] : csv_rows(csv, "row,u,v,distance,spread,status")) {
+    const auto r = static_cast<std::size_t>(row);
+    const std::vector<double> found = numbers_of(line);
+    ASSERT_EQ(found.size(), 4u) << line;
+    EXPECT_EQ(found[0], expected.u[r]);
+    EXPECT_EQ(found[1], expected.v[r]);
+    EXPECT_NEAR(found[2], expected.distance[r], 1e-13 * 85) << row;
+    if (rise(r) > rise(raised)) raised = r;
   }
-  for (const auto& [row, line] : csv_lines(csv, "row,distance,status")) {
+  ASSERT_GT(rise(raised), 1e-6);
+
+  const double radius = expected.distance[raised] - 0.5 * rise(raised);
+  const RowLogMap bounded = surface.to_rows(solver.solve(source, {.radius = radius}));
+  ASSERT_EQ(bounded.status[raised], Status::beyond_radius);
+  EXPECT_GT(rows_of(radius, true), std::count(bounded.status.begin(), bounded.status.end(), Status::ok));
+  for (const auto& [row, line] : csv_rows(csv, "row,u,v,distance,spread,status"))
+    EXPECT_TRUE(line.ends_with("," + std::string(to_string(bounded.status[static_cast<std::size_t>(row)])))) << line;
+  rows_of(radius, false);
+  for (const auto& [row, line] : csv_rows(csv, "row,distance,status")) {
     const bool ok = line.ends_with(",ok");
     EXPECT_EQ(ok, line != ",,beyond_radius") << line;
     EXPECT_TRUE(!ok || std::stod(line.substr(1)) <= radius) << line;
@@ -176,25 +126,25 @@ TEST(TiledLogMap, HasTheRowsOfTheSurfaceAsFarAsTheRadius) {
 
 TEST(TiledLogMap, IsWrittenAsRowsOfTheInput) {
   std::vector<Vec3> points = hills(60);
+  const Row duplicate(static_cast<Index>(points.size())), stray(duplicate.index + 1);
   points.push_back(points[77]);
-  points.push_back({0, 0, 5000});  // no vertex
-  TiledCloud cloud(points, {.tile_points = 1000});
-  cloud.build();
-  const TiledGraph graph(cloud.tiles, 1 << 30);
-  const auto folder = cloud.folder.directory() / "map", csv = cloud.folder.directory() / "map.csv";
+  points.push_back({0, 0, 5000});
+  const TiledCloud cloud(points, {.tile_points = 1000});
+  const TiledGraph graph = cloud.graph();
+  const auto folder = cloud.file("map"), csv = cloud.file("map.csv");
   expect_error<IoError>([&] { write_rows(graph, folder, csv); }, "not finished");
   write_log_map(graph, Source::at_vertex(graph.vertex_of_row(Row(77)).value()), folder, {});
   write_rows(graph, folder, csv);
-  std::map<int, std::string> rows = csv_lines(csv, "row,u,v,distance,spread,status");
+  std::map<int, std::string> rows = csv_rows(csv, "row,u,v,distance,spread,status");
   EXPECT_EQ(rows.size(), points.size());
-  EXPECT_NE(rows[77].find(",0,"), std::string::npos) << rows[77];  // the distance
+  EXPECT_EQ(numbers_of(rows[77])[2], 0);
   EXPECT_TRUE(rows[77].ends_with(",ok"));
-  EXPECT_EQ(rows[60 * 60], rows[77]);
-  EXPECT_EQ(rows[60 * 60 + 1], ",,,,,removed");
-  EXPECT_EQ(graph.vertex_of_row(Row(60 * 60 + 1)), std::nullopt);
-  EXPECT_THROW(graph.vertex_of_row(Row(60 * 60 + 2)), InvalidArgument);
+  EXPECT_EQ(rows[duplicate.index], rows[77]);
+  EXPECT_EQ(rows[stray.index], ",,,,,removed");
+  EXPECT_EQ(graph.vertex_of_row(stray), std::nullopt);
+  EXPECT_THROW(graph.vertex_of_row(Row(stray.index + 1)), InvalidArgument);
   EXPECT_EQ(graph.nearest_vertex(points[77]), graph.vertex_of_row(Row(77)));
-  const Row many[] = {Row(77), Row(60 * 60 + 1), Row(5), Row(77), Row(60 * 60)};
+  const Row many[] = {Row(77), stray, Row(5), Row(77), duplicate};
   const auto found = graph.vertices_of_rows(many);
   for (std::size_t k = 0; k < found.size(); ++k) EXPECT_EQ(found[k], graph.vertex_of_row(many[k]));
 }

@@ -1,368 +1,304 @@
-// Maps by several ranks are those of one process, whoever owns what; and no rank waits for one that is dead.
-#include <fcntl.h>
-#include <gtest/gtest.h>
-#include <sys/stat.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <chrono>
+// Maps by several ranks equal those of one process, whatever tiles the ranks own. The end of one rank ends all.
 #include <csignal>
-#include <iterator>
 #include <set>
 #include <sstream>
-#include <thread>
 
-#include "ahm/tiles/tiled_local_maps.hpp"
-#include "map_rows.hpp"
-#include "ranks.hpp"
+#include "programs.hpp"
 #include "tiled_clouds.hpp"
-
-#ifndef AHM_MPI_PROGRAM
-#define AHM_MPI_PROGRAM ""
-#endif
 
 namespace ahm::test {
 namespace {
 
-using std::filesystem::path;
-using tiles::ArrayFile;
-using tiles::Manifest;
-using tiles::TiledGraph;
+/// The difference is at most 1e-9 of the largest distance. The spread is the root of a difference of squares, so its squares
+/// are compared.
+void expect_close(const MapArrays& found, const MapArrays& expected) {
+  double farthest = 0;
+  for (double r : expected.distance) farthest = std::max(farthest, std::isfinite(r) ? r : 0);
+  EXPECT_GT(farthest, 0);
+  EXPECT_EQ(found.status, expected.status);
+  const auto expect_array = [&](const std::vector<double>& a, const std::vector<double>& b, int power) {
+    ASSERT_EQ(a.size(), b.size());
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      ASSERT_EQ(std::isnan(a[i]), std::isnan(b[i])) << i;
+      if (std::isnan(a[i])) continue;
+      ASSERT_LE(std::abs(std::pow(a[i], power) - std::pow(b[i], power)), 1e-9 * std::pow(farthest, power)) << i;
+    }
+  };
+  expect_array(found.coordinates, expected.coordinates, 1);
+  expect_array(found.distance, expected.distance, 1);
+  expect_array(found.spread, expected.spread, 2);
+}
 
-const std::string program = AHM_MPI_PROGRAM;
+void expect_once(const std::string& text, const std::string& part) {
+  const auto at = text.find(part);
+  EXPECT_NE(at, std::string::npos) << text;
+  EXPECT_EQ(text.find(part, at + 1), std::string::npos) << text;
+}
 
-class MpiMap : public testing::Test {
+class MpiTest : public testing::Test {
  protected:
   void SetUp() override {
-    if (program.empty()) GTEST_SKIP() << "built without ahm-mpi: no PETSc, or no MPI";
-  }
-  static Ranks start(const TiledCloud& cloud, int ranks, std::vector<std::string> words) {
-    std::vector<std::string> all{"-n", std::to_string(ranks), program};
-    all.insert(all.end(), words.begin(), words.end());
-    return Ranks(all, cloud.folder.directory() / "log");
-  }
-  static std::string run(const TiledCloud& cloud, int ranks, const std::vector<std::string>& words, int expected = 0) {
-    Ranks all = start(cloud, ranks, words);
-    EXPECT_EQ(all.wait(), expected) << all.log();
-    return all.log();
-  }
-
-  /// Both maps to 1e-9 of the largest distance. The variance of the map, which is a difference of squares, to that of its square.
-  static void expect_same(const MapRows& found, const MapRows& expected) {
-    double farthest = 0;
-    for (double r : expected.distance) farthest = std::max(farthest, std::isfinite(r) ? r : 0);
-    const double near = 1e-9 * farthest;
-    EXPECT_EQ(found.status, expected.status);
-    const auto worst = [](const std::vector<double>& a, const std::vector<double>& b, const auto& number) {
-      double most = a.size() == b.size() ? 0 : INFINITY;
-      for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
-        if (!std::isnan(a[i]) || !std::isnan(b[i])) {
-          const double difference = std::abs(number(a[i]) - number(b[i]));
-          most = std::isnan(difference) ? INFINITY : std::max(most, difference);
-        }
-      return most;
-    };
-    const auto same = [](double x) { return x; };
-    EXPECT_GT(farthest, 0);
-    EXPECT_LE(worst(found.coordinates, expected.coordinates, same), near);
-    EXPECT_LE(worst(found.distance, expected.distance, same), near);
-    EXPECT_LE(worst(found.spread, expected.spread, [](double x) { return x * x; }), near * farthest);
-  }
-
-  /// Makes the map with each number of ranks, and compares it to that of one process.
-  static void expect_map_of_one(const TiledCloud& cloud, const std::vector<Row>& rows, Variant variant, double radius,
-                                const std::vector<int>& numbers, const std::string& deal = "arrival") {
-    const TiledGraph graph(cloud.tiles, 1 << 30);
-    std::vector<Vertex> vertices;
-    for (Row row : rows) vertices.push_back(graph.vertex_of_row(row).value());
-    const auto alone = cloud.folder.directory() / "alone", together = cloud.folder.directory() / "together";
-    write_log_map(graph, Source::at_vertices(vertices), alone, {.heat = {.variant = variant}, .radius = radius});
-    for (int ranks : numbers) {
-      SCOPED_TRACE(std::to_string(ranks) + " ranks");
-      std::filesystem::remove_all(together);
-      std::vector<std::string> words{"logmap", cloud.tiles, "-o",
-                                     together, "--variant", std::string(to_string(variant)),
-                                     "--deal", deal,        "--source"};
-      for (Row row : rows) words.push_back(std::to_string(row.index));
-      if (std::isfinite(radius)) words.insert(words.end(), {"--radius", std::to_string(radius)});
-      run(cloud, ranks, words);
-      ASSERT_TRUE(std::filesystem::exists(together / "map.json"));
-      expect_same(MapRows(graph, together), MapRows(graph, alone));
-    }
+    if (std::string(AHM_MPI_PROGRAM).empty()) GTEST_SKIP() << "built without ahm-mpi: no PETSc, or no MPI";
   }
 };
 
-constexpr double everything = std::numeric_limits<double>::infinity();
+struct MpiCase {
+  const char* name;
+  std::vector<Vec3> (*points)();
+  Index tile_points;
+  std::vector<Row> rows;
+  Variant variant;
+  std::vector<int> ranks;
+  const char* deal;
+  double radius = everything;
+};
 
-TEST_F(MpiMap, IsThatOfOneProcessAdaptive) {
-  const TiledCloud cloud(two_hills(70, 30), {.tile_points = 400});
-  cloud.build();
-  expect_map_of_one(cloud, {Row(70 * 35 + 35)}, Variant::adaptive, everything, {1, 2, 3, 4}, "cards");
-}
+std::vector<Vec3> large_and_small_hills() { return two_hills(70, 30); }
+std::vector<Vec3> moebius_points() { return moebius_cloud(6000).points; }
 
-TEST_F(MpiMap, IsThatOfOneProcessLocalized) {
-  const TiledCloud cloud(two_hills(70, 30), {.tile_points = 400});
-  cloud.build();
-  expect_map_of_one(cloud, {Row(0)}, Variant::localized, everything, {1, 2, 3, 4}, "ranges");
-}
-
-TEST_F(MpiMap, IsThatOfOneProcessWithReflections) {
-  const TiledCloud cloud(moebius_cloud(6000).points, {.tile_points = 500});
-  cloud.build();
-  ASSERT_EQ(TiledGraph(cloud.tiles, 1 << 30).transport_kind(), TransportKind::block);
-  for (Variant variant : all_variants) expect_map_of_one(cloud, {Row(7)}, variant, everything, {3});
-}
-
-TEST_F(MpiMap, HasSeveralSourcesInSeveralComponents) {
-  const TiledCloud cloud(two_hills(70, 30), {.tile_points = 400});
-  cloud.build();
-  expect_map_of_one(cloud, {Row(0), Row(70 * 69), Row(70 * 70 + 450)}, Variant::adaptive, everything, {3});
-}
-
-TEST_F(MpiMap, EndsAtARadius) {
-  const TiledCloud cloud(two_hills(70, 30), {.tile_points = 400});
-  cloud.build();
-  expect_map_of_one(cloud, {Row(70 * 35 + 35)}, Variant::adaptive, 20, {2}, "ranges");
-}
-
-TEST_F(MpiMap, IsMadeByMoreRanksThanThereAreTiles) {
-  const TiledCloud cloud(hills(20), {.tile_points = 2500});
-  cloud.build();
-  expect_map_of_one(cloud, {Row(3)}, Variant::adaptive, everything, {3});
-  const TiledCloud tiny({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});  // fewer vertices than ranks
-  tiny.build();
-  expect_map_of_one(tiny, {Row(0)}, Variant::localized, everything, {4});
-}
-
-/// Points on a line are no surface, hence no vertices: tiles of nothing else are empty.
-TEST_F(MpiMap, GoesPastEmptyTiles) {
+/// Tiles with points of a line only are empty, because such points have no vertices.
+std::vector<Vec3> hills_and_a_long_line() {
   std::vector<Vec3> points = hills(30);
   for (int i = 0; i < 900; ++i) points.push_back({4000.0 + i, 0, 0});
-  const TiledCloud cloud(points, {.tile_points = 300});
-  cloud.build();
-  Index empty = 0;
-  for (const auto& tile : Manifest::read(cloud.tiles).tiles) empty += tile.vertices == 0;
-  ASSERT_GT(empty, 0);
-  expect_map_of_one(cloud, {Row(0)}, Variant::adaptive, everything, {2});
+  return points;
 }
 
-TEST_F(MpiMap, TakesOptionsOfPetsc) {
+const Row center(70 * 35 + 35);
+const MpiCase mpi_cases[] = {
+    {"Cards", large_and_small_hills, 400, {center}, Variant::adaptive, {1, 2, 3, 4}, "cards"},
+    {"Ranges", large_and_small_hills, 400, {Row(0)}, Variant::localized, {1, 2, 3, 4}, "ranges"},
+    {"Reflections", moebius_points, 500, {Row(7)}, Variant::adaptive, {3}, "arrival"},
+    {"ReflectionsLocalized", moebius_points, 500, {Row(7)}, Variant::localized, {3}, "arrival"},
+    {"SeveralSourcesInTwoComponents",
+     large_and_small_hills,
+     400,
+     {Row(0), Row(70 * 69), Row(70 * 70 + 450)},
+     Variant::adaptive,
+     {3},
+     "arrival"},
+    {"Radius", large_and_small_hills, 400, {center}, Variant::adaptive, {2}, "ranges", 20},
+    {"MoreRanksThanTiles", [] { return hills(20); }, 2500, {Row(3)}, Variant::adaptive, {3}, "arrival"},
+    {"MoreRanksThanVertices",
+     [] {
+       return std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+     },
+     2500,
+     {Row(0)},
+     Variant::localized,
+     {4},
+     "arrival"},
+    {"EmptyTiles", hills_and_a_long_line, 300, {Row(0)}, Variant::adaptive, {2}, "arrival"}};
+
+class MpiMaps : public MpiTest, public testing::WithParamInterface<MpiCase> {};
+
+TEST_P(MpiMaps, EqualThoseOfOneProcess) {
+  const MpiCase& mpi_case = GetParam();
+  const TiledCloud cloud(mpi_case.points(), {.tile_points = mpi_case.tile_points});
+  const TiledGraph graph = cloud.graph();
+  const auto is_empty = [](const tiles::TileFacts& tile) { return tile.vertices == 0; };
+  EXPECT_EQ(graph.transport_kind() == TransportKind::block, mpi_case.points == moebius_points);
+  EXPECT_EQ(std::ranges::any_of(graph.manifest().tiles, is_empty), mpi_case.points == hills_and_a_long_line);
+  const path alone = cloud.file("alone"), together = cloud.file("together");
+  std::vector<std::string> words{"logmap", cloud.tiles,   "-o",
+                                 together, "--variant",   std::string(to_string(mpi_case.variant)),
+                                 "--deal", mpi_case.deal, "--source"};
+  std::vector<Vertex> vertices;
+  for (Row row : mpi_case.rows) {
+    vertices.push_back(graph.vertex_of_row(row).value());
+    words.push_back(std::to_string(row.index));
+  }
+  if (std::isfinite(mpi_case.radius)) words.insert(words.end(), {"--radius", std::to_string(mpi_case.radius)});
+  write_log_map(graph, Source::at_vertices(vertices), alone,
+                {.heat = {.variant = mpi_case.variant}, .radius = mpi_case.radius});
+  for (int ranks : mpi_case.ranks) {
+    SCOPED_TRACE(std::to_string(ranks) + " ranks");
+    std::filesystem::remove_all(together);
+    mpi_output(ranks, words, cloud.file("log"));
+    ASSERT_TRUE(std::filesystem::exists(together / "map.json"));
+    expect_close(MapArrays(graph, together), MapArrays(graph, alone));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Clouds, MpiMaps, testing::ValuesIn(mpi_cases),
+                         [](const auto& tested) { return std::string(tested.param.name); });
+
+TEST_F(MpiTest, OptionsOfPetscApply) {
   const TiledCloud cloud(hills(40), {.tile_points = 400});
-  cloud.build();
-  const auto folder = cloud.folder.directory() / "map";
-  const auto log =
-      run(cloud, 2, {"logmap", cloud.tiles, "-o", folder, "--traffic", "--", "-ksp_view", "-pc_type", "jacobi"});
+  const auto run = [&](const std::vector<std::string>& more, int status) {
+    std::vector<std::string> words{"logmap", cloud.tiles, "-o", cloud.file("map")};
+    words.insert(words.end(), more.begin(), more.end());
+    return mpi_output(2, words, cloud.file("log"), status);
+  };
+  const auto log = run({"--traffic", "--", "-ksp_view", "-pc_type", "jacobi"}, 0);
   EXPECT_NE(log.find("type: jacobi"), std::string::npos) << log;
   EXPECT_NE(log.find("peak memory, MB: "), std::string::npos) << log;
-  const auto end = run(cloud, 2, {"logmap", cloud.tiles, "-o", folder, "--", "-ksp_max_it", "2"}, 1);
-  EXPECT_NE(end.find("DIVERGED_ITS"), std::string::npos) << end;
+  const auto failed = run({"--", "-ksp_max_it", "2"}, 1);
+  EXPECT_NE(failed.find("DIVERGED_ITS"), std::string::npos) << failed;
 }
 
-TEST_F(MpiMap, LocalMapsAreThoseOfOneProcess) {
+TEST_F(MpiTest, LocalMapsEqualThoseOfOneProcess) {
   const TiledCloud cloud(hills(60), {.tile_points = 500});
-  cloud.build();
-  const TiledGraph graph(cloud.tiles, 1 << 30);
-  const auto alone = cloud.folder.directory() / "alone", together = cloud.folder.directory() / "together";
+  const TiledGraph graph = cloud.graph();
+  const path alone = cloud.file("alone"), together = cloud.file("together");
   tiles::TiledLocalMapOptions options;
   options.maps.radius = 4;
   options.maps.bound_by_straight_line = true;
   options.features = {"count", "curvature"};
   for (std::size_t t = 0; t < graph.tiles(); ++t) write_local_maps(graph, t, alone, options);
-  run(cloud, 3, {"local-maps", cloud.tiles, "-o", together, "--radius", "4", "--feature", "count", "curvature"});
+  mpi_output(3, {"local-maps", cloud.tiles, "-o", together, "--radius", "4", "--feature", "count", "curvature"},
+             cloud.file("log"));
   for (std::size_t t = 0; t < graph.tiles(); ++t) {
-    const auto expected = text_of(Manifest::file(alone, "local", t));
+    const auto expected = read_file(Manifest::file(alone, "local", t));
     EXPECT_FALSE(expected.empty());
-    EXPECT_TRUE(text_of(Manifest::file(together, "local", t)) == expected) << "tile " << t;
+    EXPECT_TRUE(read_file(Manifest::file(together, "local", t)) == expected) << "tile " << t;
   }
 }
 
-/// A row of tile 0, so that nothing but the march comes to other tiles.
-std::string row_of_first_tile(const TiledCloud& cloud) {
-  return std::to_string(TiledGraph(cloud.tiles, 1 << 30).rows(0).rows[0]);
-}
-
-TEST_F(MpiMap, ADamagedTileEndsAllRanks) {
-  const TiledCloud cloud(hills(60), {.tile_points = 300});
-  cloud.build();
-  const auto row = row_of_first_tile(cloud), map = (cloud.folder.directory() / "map").string();
-  const auto tile = Manifest::file(cloud.tiles, "graph", 7);
-  const std::string whole = text_of(tile);
-  std::string damaged = whole;
-  damaged[damaged.size() / 2] ^= 4;
-  std::ofstream(tile, std::ios::binary) << damaged;
-  auto log = run(cloud, 3, {"logmap", cloud.tiles, "-o", map, "--source", row}, 1);
-  EXPECT_NE(log.find(tile.string()), std::string::npos) << log;
-  std::filesystem::remove(tile);
-  log = run(cloud, 3, {"logmap", cloud.tiles, "-o", map, "--source", row}, 1);
-  EXPECT_NE(log.find(tile.string()), std::string::npos) << log;
-  EXPECT_FALSE(std::filesystem::exists(path(map) / "map.json"));
-  std::ofstream(tile, std::ios::binary) << whole;
-  run(cloud, 3, {"logmap", cloud.tiles, "-o", map, "--source", row});
-  EXPECT_TRUE(std::filesystem::exists(path(map) / "map.json"));
-}
-
-TEST_F(MpiMap, AnErrorOfAllRanksIsSaidOnce) {
-  const TiledCloud cloud(hills(20), {.tile_points = 300});  // not built
-  const auto log = run(cloud, 3, {"logmap", cloud.tiles, "-o", cloud.folder.directory() / "map"}, 1);
-  const auto at = log.find("build them first");
-  EXPECT_NE(at, std::string::npos) << log;
-  EXPECT_EQ(log.find("build them first", at + 1), std::string::npos) << log;
-  EXPECT_NE(run(cloud, 2, {"logmap", cloud.tiles, "-o", "map", "--nonsense"}, 2).find("--nonsense"), std::string::npos);
-  cloud.build();
-  const auto no_feature = run(
-      cloud, 3,
-      {"local-maps", cloud.tiles, "-o", cloud.folder.directory() / "map", "--radius", "3", "--feature", "cuont"}, 1);
-  const auto first = no_feature.find("'cuont' is not one of");
-  EXPECT_NE(first, std::string::npos) << no_feature;
-  EXPECT_EQ(no_feature.find("'cuont' is not one of", first + 1), std::string::npos) << no_feature;
-}
-
-/// A file that cannot be written: a folder stands in its place, with something in it.
-TEST_F(MpiMap, AFileThatCannotBeWrittenEndsAllRanks) {
-  const TiledCloud cloud(hills(60), {.tile_points = 300});
-  cloud.build();
-  const auto row = row_of_first_tile(cloud);
-  const auto map = cloud.folder.directory() / "map", place = Manifest::file(map, "map", 5);
-  std::filesystem::create_directories(place / "something");
-  const auto log = run(cloud, 3, {"logmap", cloud.tiles, "-o", map, "--source", row}, 1);
-  EXPECT_NE(log.find(place.string()), std::string::npos) << log;
-}
-
-/// Those that nobody has asked for yet how they ended are not.
-bool is_alive(pid_t process) {
-  const std::string stat = text_of(path("/proc") / std::to_string(process) / "stat");
-  const auto state = stat.rfind(") ");
-  return state != std::string::npos && stat[state + 2] != 'Z' && stat[state + 2] != 'X';
-}
-
-/// One rank waits for ever for a tile, a pipe that nobody writes to, so that the others wait for it; then one of those is killed.
-TEST_F(MpiMap, AKilledRankEndsAll) {
-  const TiledCloud cloud(hills(60), {.tile_points = 300});
-  cloud.build();
-  const auto row = row_of_first_tile(cloud);
-  const auto tile = Manifest::file(cloud.tiles, "graph", 8);
-  std::filesystem::remove(tile);
-  ASSERT_EQ(::mkfifo(tile.c_str(), 0600), 0);
-  const auto map = cloud.folder.directory() / "map";
-  Ranks ranks = start(cloud, 3, {"logmap", cloud.tiles, "-o", map, "--source", row});
-  while (ranks.log().find("solve") == std::string::npos) {
-    ASSERT_EQ(ranks.wait(std::chrono::seconds(0)), -1) << ranks.log();
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  }
-  const std::vector<pid_t> children = ranks.children();
-  ASSERT_EQ(children.size(), 3u);
-  ASSERT_EQ(ranks.wait(std::chrono::seconds(1)), -1) << "tile 8 was not asked for: " << ranks.log();
-  ::kill(children[1], SIGKILL);
-  const int status = ranks.wait(std::chrono::seconds(60));
-  EXPECT_GT(status, 0) << ranks.log();
-  EXPECT_FALSE(std::filesystem::exists(map / "map.json"));
-  for (int tries = 0; tries < 600 && std::any_of(children.begin(), children.end(), is_alive); ++tries)
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));
-  EXPECT_TRUE(std::none_of(children.begin(), children.end(), is_alive));
-}
-
-/// As above; then as many ranks go on from the last checkpoint to the same bytes, and others to the same map.
-TEST_F(MpiMap, GoesOnAfterAKilledRank) {
-  const TiledCloud cloud(strip(), {.tile_points = 400});
-  cloud.build();
-  const auto directory = cloud.folder.directory(), whole = directory / "whole", map = directory / "map",
-             kept = directory / "kept";
-  path tile;
-  {
-    const TiledGraph graph(cloud.tiles, 1 << 30);
-    ASSERT_LT(graph.frame(0)->origin[0], 100);
-    tile = Manifest::file(cloud.tiles, "graph", graph.tile_of(graph.nearest_vertex({300, 5, 0}).index));
-  }
-  const auto words = [&](const path& output) {
-    return std::vector<std::string>{
-        "logmap",   cloud.tiles, "-o",           output, "--source", row_of_first_tile(cloud),
-        "--memory", "64KB",      "--checkpoint", "1"};
-  };
-  const std::vector<std::string> make = words(map);
-  run(cloud, 3, words(whole));
-  std::filesystem::rename(tile, kept);
-  ASSERT_EQ(::mkfifo(tile.c_str(), 0600), 0);
-  {
-    Ranks ranks = start(cloud, 3, make);
-    for (int tries = 0; tries < 3000 && !std::filesystem::exists(map / "march.json"); ++tries) {
-      ASSERT_EQ(ranks.wait(std::chrono::seconds(0)), -1) << ranks.log();
-      std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    }
-    ::kill(ranks.children().at(1), SIGKILL);
-    EXPECT_GT(ranks.wait(std::chrono::seconds(60)), 0) << ranks.log();
-  }
-  std::filesystem::rename(kept, tile);
-  // Copies go on by fewer, by more, by as many with other tiles, and by one process: the same map to the accuracy.
-  const auto go_on = [&](const std::string& name, int ranks, const std::vector<std::string>& more) {
-    const auto copy = directory / name;
-    std::filesystem::copy(map, copy);
-    std::vector<std::string> here = words(copy);
-    here.insert(here.end(), more.begin(), more.end());
-    const std::string said = run(cloud, ranks, here);
-    EXPECT_NE(said.find("resumed after band"), std::string::npos) << said;
-    const TiledGraph graph(cloud.tiles, 1 << 30);
-    expect_same(MapRows(graph, copy), MapRows(graph, whole));
-    std::set<std::string> names, expected;
-    for (const auto& [file, bytes] : contents(copy)) names.insert(file);
-    for (const auto& [file, bytes] : contents(whole)) expected.insert(file);
-    EXPECT_EQ(names, expected);
-  };
-  go_on("fewer", 2, {});
-  go_on("more", 4, {"--deal", "ranges"});
-  go_on("alone", 1, {});
-  std::vector<std::string> other = make;
-  other.insert(other.end(), {"--t-coef", "2"});
-  const auto refused = run(cloud, 2, other, 1);
-  const auto at = refused.find("sources or options");
-  EXPECT_NE(at, std::string::npos) << refused;
-  EXPECT_EQ(refused.find("sources or options", at + 1), std::string::npos) << refused;
-  const auto log = run(cloud, 3, make);
-  EXPECT_NE(log.find("resumed after band"), std::string::npos) << log;
-  EXPECT_TRUE(contents(map) == contents(whole));
-}
-
-/// The sum over ranks of a number that `--traffic` tells.
-std::int64_t told(const std::string& log, const std::string& what) {
-  const auto at = log.find("\n" + what + ": ");
-  EXPECT_NE(at, std::string::npos) << log;
-  std::istringstream numbers(log.substr(at + what.size() + 3, log.find('\n', at + 1) - at));
-  std::int64_t sum = 0;
-  for (std::int64_t number = 0; numbers >> number;) sum += number;
-  return sum;
-}
-
-TEST_F(MpiMap, DistancesAloneAreThoseOfOneProcessForLess) {
-  const TiledCloud cloud(two_hills(70, 30), {.tile_points = 400});
-  cloud.build();
-  const TiledGraph graph(cloud.tiles, 1 << 30);
-  const auto directory = cloud.folder.directory();
-  const Vertex source = graph.vertex_of_row(Row(70 * 35 + 35)).value();
-  tiles::TiledMapOptions options;
-  options.coordinates = false;
-  const double near = 1e-9 * write_log_map(graph, Source::at_vertex(source), directory / "alone", options).farthest;
+TEST_F(MpiTest, WithoutCoordinatesDistancesAreThoseOfOneProcessAtLessCost) {
+  const TiledCloud cloud(large_and_small_hills(), {.tile_points = 400});
+  const TiledGraph graph = cloud.graph();
+  const path alone = cloud.file("alone"), together = cloud.file("together");
+  const Source source = Source::at_vertex(graph.vertex_of_row(center).value());
+  const double near = 1e-9 * write_log_map(graph, source, alone, {.coordinates = false}).farthest;
   for (int ranks : {1, 3}) {
-    const auto words = [&](const std::string& command, const path& output) {
-      return std::vector<std::string>{command, cloud.tiles, "-o", output, "--source", "2485", "--traffic"};
+    const auto run = [&](const std::string& command, const path& output) {
+      return mpi_output(ranks,
+                        {command, cloud.tiles, "-o", output, "--source", std::to_string(center.index), "--traffic"},
+                        cloud.file("log"));
     };
-    const auto log = run(cloud, ranks, words("distance", directory / "distance"));
+    const auto log = run("distance", together), map_log = run("logmap", cloud.file("map"));
+    const MapArrays expected(graph, alone, false), found(graph, together, false);
+    EXPECT_EQ(found.status, expected.status);
     Index compared = 0;
-    for (std::size_t t = 0; t < graph.tiles(); ++t) {
-      const ArrayFile a(Manifest::file(directory / "alone", "map", t), "map"),
-          b(Manifest::file(directory / "distance", "map", t), "map");
-      EXPECT_TRUE(same_bits(a.get<std::uint8_t>("status"), b.get<std::uint8_t>("status")));
-      const auto expected = a.get<double>("distance"), found = b.get<double>("distance");
-      for (std::size_t i = 0; i < expected.size(); ++i)
-        if (!std::isnan(expected[i])) {
-          EXPECT_NEAR(found[i], expected[i], near);
-          ++compared;
-        }
-    }
+    for (std::size_t i = 0; i < expected.distance.size(); ++i)
+      if (!std::isnan(expected.distance[i])) {
+        EXPECT_NEAR(found.distance[i], expected.distance[i], near);
+        ++compared;
+      }
     EXPECT_EQ(compared, 70 * 70);
-    const auto map = run(cloud, ranks, words("logmap", directory / "map"));
-    // By A lambda, both second moments, and a test of A; the map's two coordinates, too. By B displacements; the map's frames.
-    EXPECT_EQ(7 * told(log, "solves"), 5 * told(map, "solves"));
-    EXPECT_LT(told(log, "iterations"), told(map, "iterations"));
+    // Sum over the ranks of a number that --traffic prints.
+    const auto total = [](const std::string& text, const std::string& name) {
+      const auto at = text.find("\n" + name + ": ");
+      EXPECT_NE(at, std::string::npos) << text;
+      std::istringstream numbers(text.substr(at + name.size() + 3, text.find('\n', at + 1) - at));
+      std::int64_t sum = 0;
+      for (std::int64_t number = 0; numbers >> number;) sum += number;
+      return sum;
+    };
+    // With A: lambda, two second moments and a test; maps also two coordinates. With B: displacements; maps also frames.
+    EXPECT_EQ(7 * total(log, "solves"), 5 * total(map_log, "solves"));
+    EXPECT_LT(total(log, "iterations"), total(map_log, "iterations"));
   }
+}
+
+TEST_F(MpiTest, ErrorsOfAllRanksArePrintedOnce) {
+  const PlannedCloud cloud(hills(20), {.tile_points = 300});
+  const path map = cloud.file("map"), log = cloud.file("log");
+  expect_once(mpi_output(3, {"logmap", cloud.tiles, "-o", map}, log, 1), "build them first");
+  EXPECT_NE(mpi_output(2, {"logmap", cloud.tiles, "-o", map, "--nonsense"}, log, 2).find("--nonsense"),
+            std::string::npos);
+  cloud.build();
+  expect_once(mpi_output(3, {"local-maps", cloud.tiles, "-o", map, "--radius", "3", "--feature", "cuont"}, log, 1),
+              "'cuont' is not one of");
+}
+
+/// Maps of three ranks from a row of tile 0, with many tiles.
+class MpiFaults : public MpiTest {
+ protected:
+  std::vector<std::string> words() const {
+    return {"logmap", cloud.tiles, "-o", map, "--source", std::to_string(cloud.first_row().index)};
+  }
+  void expect_error_at(const path& file) const {
+    const auto output = mpi_output(3, words(), log, 1);
+    EXPECT_NE(output.find(file.string()), std::string::npos) << output;
+    EXPECT_FALSE(std::filesystem::exists(map / "map.json"));
+  }
+
+  const TiledCloud cloud{hills(60), {.tile_points = 300}};
+  const path map = cloud.file("map"), log = cloud.file("log");
+};
+
+TEST_F(MpiFaults, DamagedTilesEndAllRanks) {
+  const path tile = cloud.tile("graph", 7);
+  const std::string whole = read_file(tile);
+  flip_bit(tile, whole.size() / 2);
+  expect_error_at(tile);
+  std::filesystem::remove(tile);
+  expect_error_at(tile);
+  write_file(tile, whole);
+  mpi_output(3, words(), log);
+  EXPECT_TRUE(std::filesystem::exists(map / "map.json"));
+}
+
+/// A folder that is not empty is in the place of a file.
+TEST_F(MpiFaults, FilesThatCannotBeWrittenEndAllRanks) {
+  std::filesystem::create_directories(Manifest::file(map, "map", 5) / "folder");
+  expect_error_at(Manifest::file(map, "map", 5));
+}
+
+/// One rank waits forever for a tile, and the others wait for this rank. Then one of the others is killed.
+TEST_F(MpiFaults, AKilledRankEndsAllRanks) {
+  const BlockedFile tile(cloud.tile("graph", 8));
+  Background run(mpi_command(3, words()), log);
+  run.wait_for([&] { return run.log().find("solve") != std::string::npos; });
+  const std::vector<pid_t> children = run.children();
+  ASSERT_EQ(children.size(), 3u);
+  ASSERT_EQ(run.wait(std::chrono::seconds(1)), -1) << "no rank reads tile 8: " << run.log();
+  ::kill(children[1], SIGKILL);
+  EXPECT_GT(run.wait(std::chrono::seconds(60)), 0) << run.log();
+  EXPECT_FALSE(std::filesystem::exists(map / "map.json"));
+  const auto is_running = [](pid_t process) {  // zombies have ended
+    const std::string stat = read_file("/proc/" + std::to_string(process) + "/stat");
+    const auto state = stat.rfind(") ");
+    return state != std::string::npos && stat[state + 2] != 'Z' && stat[state + 2] != 'X';
+  };
+  for (int tries = 0; tries < 600 && std::ranges::any_of(children, is_running); ++tries)
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  EXPECT_TRUE(std::ranges::none_of(children, is_running));
+}
+
+/// As many ranks resume from the last checkpoint to the same bytes; another number of ranks, or of tiles per rank, to the
+/// same map.
+TEST_F(MpiTest, ResumesAfterAKilledRank) {
+  const Strip cloud;
+  const path whole = cloud.file("whole"), map = cloud.file("map"), log = cloud.file("log");
+  const auto words = [&](const path& output, const std::vector<std::string>& more = {}) {
+    std::vector<std::string> all{
+        "logmap",   cloud.tiles, "-o",           output, "--source", std::to_string(cloud.first_row().index),
+        "--memory", "64KB",      "--checkpoint", "1"};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  };
+  mpi_output(3, words(whole), log);
+  {
+    const BlockedFile tile(cloud.far_tile());
+    Background run(mpi_command(3, words(map)), log);
+    run.wait_for([&] { return std::filesystem::exists(map / "march.json"); });
+    ::kill(run.children().at(1), SIGKILL);
+    EXPECT_GT(run.wait(std::chrono::seconds(60)), 0) << run.log();
+  }
+  const auto expect_resumed = [&](int ranks, const std::vector<std::string>& arguments) {
+    const auto output = mpi_output(ranks, arguments, log);
+    EXPECT_NE(output.find("resumed after band"), std::string::npos) << output;
+  };
+  const auto names_of = [](const path& folder) {
+    std::set<std::string> names;
+    for (const auto& [name, bytes] : contents(folder)) names.insert(name);
+    return names;
+  };
+  const TiledGraph graph = cloud.graph();
+  for (const auto& [ranks, more] :
+       std::vector<std::pair<int, std::vector<std::string>>>{{2, {}}, {4, {"--deal", "ranges"}}, {1, {}}}) {
+    SCOPED_TRACE(std::to_string(ranks) + " ranks");
+    const path copy = cloud.file("copy for " + std::to_string(ranks));
+    std::filesystem::copy(map, copy);
+    expect_resumed(ranks, words(copy, more));
+    expect_close(MapArrays(graph, copy), MapArrays(graph, whole));
+    EXPECT_EQ(names_of(copy), names_of(whole));
+  }
+  expect_once(mpi_output(2, words(map, {"--t-coef", "2"}), log, 1), "sources or options");
+  expect_resumed(3, words(map));
+  EXPECT_TRUE(contents(map) == contents(whole));
 }
 
 }  // namespace

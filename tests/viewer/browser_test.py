@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The viewer's page in a real, headless Chromium: what a person does, and what the library says to it.
+"""The viewer's page in a real, headless Chromium: actions of a user, and results of the library.
 
 Exit status 77 (skipped) where python3-selenium is not installed. Screenshots are left in --work.
 """
@@ -126,7 +126,7 @@ class Page(unittest.TestCase):
             self.driver.find_element(By.ID, "canvas"), round(x - self.js("return ahm.stage.width") / 2), round(y - self.js("return ahm.stage.height") / 2))
 
     def visible_rows(self, count):
-        """Rows that are seen, by their pixel: [[row, x, y], ...], away from the marks and each other."""
+        """Visible rows and their pixels: [[row, x, y], ...], away from the marks and each other."""
         return self.js("""
             const s = ahm.stage, out = [], p = s.surface.positions;
             for (let k = 0; k < s.surface.points.length && out.length < arguments[0]; k += 37) {
@@ -173,7 +173,7 @@ class Page(unittest.TestCase):
             for found, name in ((uv[2 * i], "u"), (uv[2 * i + 1], "v"), (distance[i], "distance"), (spread[i], "spread")):
                 self.assertAlmostEqual(found, float(row[name]), delta=3e-7 * largest, msg=f"{name} of row {i}")
 
-    def test_a_click_gives_the_map_the_library_gives(self):
+    def test_a_click_draws_the_map_of_the_library(self):
         self.open(self.mesh)
         row, x, y = self.visible_rows(8)[-1]
         self.click_at(x + 2, y + 1)
@@ -183,7 +183,7 @@ class Page(unittest.TestCase):
         self.assertEqual(self.text("command"), f"ahm logmap {self.mesh} --source {source} -o map.csv --method polar")
         self.shot("mesh_polar")
 
-    def test_hover_tells_the_row_under_the_pointer(self):
+    def test_hover_displays_the_row_under_the_pointer(self):
         self.open(self.mesh, "--source", 0)
         rows = self.library_rows("0")
         for row, x, y in self.visible_rows(5):
@@ -213,13 +213,13 @@ class Page(unittest.TestCase):
         self.assertLess(math.dist(self.js("return ahm.stage.map.position"), self.points[row]), 0.05)
         self.expect_map(self.library_rows(self.text("spec")))
 
-    def test_a_newer_request_takes_the_place_of_older_ones(self):
+    def test_a_newer_request_replaces_older_ones(self):
         self.open(self.mesh)
         self.js("for (let k = 0; k < 20; ++k) ahm.ask_map({ row: 10 + k })")
         self.settled()
         self.assertEqual(self.text("spec"), "29")
         self.expect_map(self.library_rows("29"))
-        # The browser tells of the refusals (409) of those that were on their way.
+        # The browser logs the refusals (409) of the older requests.
         self.driver.get_log("browser")
 
     def test_export_is_the_file_of_the_command(self):
@@ -229,7 +229,7 @@ class Page(unittest.TestCase):
         self.assertEqual(self.downloaded("map.csv"), (self.work / "export.csv").read_bytes())
 
     def expect_export(self, name):
-        """What is saved is what the command line beside it writes."""
+        """The saved file equals the file of the command that the page displays."""
         self.settled()
         self.driver.find_element(By.ID, "export").click()
         command = shlex.split(self.text("command"))
@@ -287,7 +287,7 @@ class Page(unittest.TestCase):
         at_v = self.driver.find_element(By.ID, "at_v").get_attribute("title")  # all of its digits
         self.assertEqual(at_v, self.js("return Ahm.number(ahm.panel.length_of(ahm.stage.map.uv[2 * arguments[0] + 1]), 9)", row))
         self.expect_export("stroke.csv")
-        self.js("ahm.set_tool('coverage')")  # on a map from a point again
+        self.js("ahm.set_tool('coverage')")  # a map from a point
         self.wait("document.getElementById('command').textContent.startsWith('ahm coverage')")
         self.assertEqual(self.js("return ahm.stage.map.pattern"), "polar")
 
@@ -313,7 +313,7 @@ class Page(unittest.TestCase):
         self.shot("decal")
         self.assertNotEqual((self.work / "decal.png").read_bytes(), (self.work / "decal_before.png").read_bytes())
         self.expect_export("decal.glb")
-        # After a stroke it lies where it lay, not along the stroke.
+        # After a stroke the decal is where it was, not along the stroke.
         command = self.text("command")
         self.draw_stroke()
         self.assertEqual(self.js("return ahm.stage.uniforms.decal_frame.value.length()"), 0)
@@ -365,12 +365,12 @@ class Page(unittest.TestCase):
         self.assertFalse(self.driver.find_element(By.ID, "take").is_displayed())
         self.shot("static")
 
-    def test_a_large_mesh_is_coarser_while_it_moves_and_looks_alike(self):
+    def test_a_large_mesh_is_coarser_while_it_moves_and_looks_the_same(self):
         self.open(self.mesh)
         corners, count = self.js("""const t = Ahm.coarse_triangles(ahm.stage.surface, 12), out = new Set();
             for (let k = 0; k < t.length; k += 3) out.add([t[k], t[k + 1], t[k + 2]].sort((a, b) => a - b).join());
             return [t.length, out.size]""")
-        self.assertEqual(corners, 3 * count)  # none twice
+        self.assertEqual(corners, 3 * count)  # no corner occurs twice
         self.assertLess(count, len(self.faces) / 4)
         covered = """const s = ahm.stage, gl = s.renderer.getContext(), bytes = new Uint8Array(4 * gl.drawingBufferWidth * gl.drawingBufferHeight);
             s.is_moving = arguments[0]; s.quality = 1; s.draw();
@@ -454,7 +454,7 @@ class Page(unittest.TestCase):
             self.shot("panel_" + tool)
             self.expect_all_seen_with_larger_letters_and_a_longer_command(tool)
         self.js("document.getElementById('method_section').open = false")
-        # What a browser leaves of such a screen.
+        # The area that a browser leaves on a small screen.
         self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": 1366, "height": 620, "deviceScaleFactor": 1, "mobile": False})
         self.wait("ahm.stage.height === 620 && !ahm.stage.pending")
         self.assertTrue(self.all_is_seen())

@@ -1,9 +1,8 @@
-// What a page is told is what the library finds.
-#include <gtest/gtest.h>
-
+// Answers of a session are the results of the library. Unsuitable requests are errors.
 #include <array>
 #include <fstream>
 #include <numbers>
+#include <random>
 #include <set>
 #include <thread>
 
@@ -14,368 +13,351 @@
 #include "ahm/pointcloud/point_cloud_surface.hpp"
 #include "ahm/surface/exact/exact_geodesics.hpp"
 #include "ahm/surface/mesh_repair.hpp"
-#include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "ahm/util/shell.hpp"
-#include "sphere.hpp"
+#include "sessions.hpp"
 
 namespace ahm::viewer::test {
 namespace {
 
-std::string request(json more) {
-  more["client"] = "test";
-  return more.dump();
+Answer answer(const Session& session, const char* name, json request) {
+  request["client"] = "test";
+  return session.answer(name, request.dump());
 }
 
-std::string error_of(const Answer& answer) { return json::parse(answer.body).at("error"); }
+json json_answer(const Session& session, const char* name, const json& request) {
+  const Answer found = answer(session, name, request);
+  EXPECT_EQ(found.status, 200) << found.body;
+  return json::parse(found.body);
+}
 
-class ViewerSession : public testing::Test {
- protected:
-  Sphere sphere;
-  Session session{sphere.surface, sphere.geometry, sphere_options()};
-};
+Bundle bundle_answer(const Session& session, const char* name, const json& request) {
+  const Answer found = answer(session, name, request);
+  EXPECT_EQ(found.status, 200) << found.body;
+  return Bundle(found.body);
+}
 
-/// Or both NaN.
-bool same(float a, double b) { return a == static_cast<float>(b) || (std::isnan(a) && std::isnan(b)); }
+Bundle surface_of(const Session& session) { return Bundle(session.answer("surface", {}).body); }
+double scale_of(const Session& session) { return surface_of(session).meta.at("scale").get<double>(); }
 
-void expect_same(const RowLogMap& rows, const Unpacked& bundle, double scale) {
+json at_row(int row) { return {{"row", row}}; }
+json from_row(int row, const json& more = json::object()) {
+  json request = more;
+  request["source"] = at_row(row);
+  return request;
+}
+json path_between(int from, int to) { return {{"from", at_row(from)}, {"to", at_row(to)}}; }
+json stroke_between(int from, int to) { return {{"points", {at_row(from), at_row(to)}}}; }
+json tool_path(double radius, double spacing, const char* pattern) {
+  return {{"cover", radius}, {"spacing", spacing}, {"pattern", pattern}};
+}
+
+/// The same values in single precision.
+void expect_same(const Bundle& bundle, const RowLogMap& rows, double scale) {
   const auto uv = bundle.array<float>("uv"), distance = bundle.array<float>("distance");
   const auto spread = bundle.array<float>("spread");
   const auto status = bundle.array<std::uint8_t>("status");
+  const auto same = [&](float a, double b) {
+    return a == static_cast<float>(b / scale) || (std::isnan(a) && std::isnan(b));
+  };
   ASSERT_EQ(uv.size(), 2 * rows.u.size());
   for (std::size_t i = 0; i < rows.u.size(); ++i) {
     ASSERT_EQ(status[i], static_cast<std::uint8_t>(rows.status[i]));
-    ASSERT_TRUE(same(uv[2 * i], rows.u[i] / scale)) << i;
-    ASSERT_TRUE(same(uv[2 * i + 1], rows.v[i] / scale)) << i;
-    ASSERT_TRUE(same(distance[i], rows.distance[i] / scale)) << i;
-    ASSERT_TRUE(same(spread[i], rows.spread[i] / scale)) << i;
+    ASSERT_TRUE(same(uv[2 * i], rows.u[i]) && same(uv[2 * i + 1], rows.v[i])) << i;
+    ASSERT_TRUE(same(distance[i], rows.distance[i]) && same(spread[i], rows.spread[i])) << i;
   }
 }
 
-double scale_of(const Session& session) {
-  return Unpacked(session.answer("surface", {}).body).meta.at("scale").get<double>();
-}
-
-TEST_F(ViewerSession, GivesTheMapTheLibraryGives) {
-  const LogMapSolver solver(sphere.surface.graph());
-  const auto expected = sphere.surface.to_rows(solver.solve(sphere.surface.source(Row{7}).source));
-  const Answer answer = session.answer("map", request({{"source", {{"row", 7}}}}));
-  ASSERT_EQ(answer.status, 200) << answer.body;
-  expect_same(expected, Unpacked(answer.body), scale_of(session));
-}
-
-TEST_F(ViewerSession, GivesExactSourcesInFaces) {
-  const FacePoint point{11, {0.2, 0.3, 0.5}};
-  const ExactGeodesics geodesics(sphere.surface);
-  const auto u = sphere.surface.source(point).frame->x;
-  const auto expected = sphere.surface.to_rows(geodesics.log_map(point, u, {.frames = true}));
-  const Answer answer =
-      session.answer("map", request({{"source", {{"face", 11}, {"weights", {0.2, 0.3, 0.5}}}}, {"method", "exact"}}));
-  ASSERT_EQ(answer.status, 200) << answer.body;
-  const Unpacked bundle(answer.body);
-  expect_same(expected, bundle, scale_of(session));
-  EXPECT_EQ(bundle.meta.at("spec"), "face:11:0.2,0.3,0.5");
-  EXPECT_EQ(bundle.meta.at("command"), "ahm logmap sphere.ply --source face:11:0.2,0.3,0.5 -o map.csv --method exact");
-}
-
-TEST_F(ViewerSession, HonoursEverySetting) {
-  HeatOptions heat;
-  heat.t_coef = 2;
-  const LogMapSolver solver(sphere.surface.graph(), heat);
-  MapOptions options;
-  options.variant = Variant::localized;
-  options.radius = 1;
-  const Vec3 axis{0, 0.3, 1};
-  const auto expected = sphere.surface.to_rows(solver.solve(sphere.surface.source(Row{7}, axis).source, options));
-  const Answer answer = session.answer(
-      "map",
-      request(
-          {{"source", {{"row", 7}}}, {"variant", "localized"}, {"t_coef", 2}, {"radius", 1}, {"u_axis", {0, 0.3, 1}}}));
-  ASSERT_EQ(answer.status, 200) << answer.body;
-  expect_same(expected, Unpacked(answer.body), scale_of(session));
-  EXPECT_EQ(Unpacked(answer.body).meta.at("command"),
-            "ahm logmap sphere.ply --source 7 -o map.csv --method heat --variant localized --t-coef 2 --radius 1 "
-            "--u-axis=0,0.3,1");
-}
-
-TEST_F(ViewerSession, NullIsNoRadiusWhateverTheUsualOne) {
-  SessionOptions near = sphere_options();
-  near.settings.radius = 0.5;
-  const Session other(sphere.surface, sphere.geometry, near);
-  const auto reached = [&](const json& more) {
-    json wanted = {{"source", {{"row", 7}}}};
-    wanted.update(more);
-    const auto status = Unpacked(other.answer("map", request(wanted)).body).array<std::uint8_t>("status");
-    return std::ranges::count(status, static_cast<std::uint8_t>(Status::ok));
-  };
-  const auto all = static_cast<std::ptrdiff_t>(sphere.geometry.points.size());
-  EXPECT_LT(reached(json::object()), all);
-  EXPECT_EQ(reached({{"radius", nullptr}}), all);
-}
-
-/// What ends at a radius needs no factors of the whole: it is the march's, bit for bit.
-class LargeViewerSession : public testing::Test {
+class ViewerSession : public testing::Test {
  protected:
-  LargeViewerSession() {
-    near.settings.radius = 0.05;
-    session.emplace(large.surface, large.geometry, near);
-    HeatOptions heat;
-    heat.strategy = Strategy::march;
-    march.emplace(large.surface.graph(), heat);
-  }
-
-  Sphere large{142};
-  SessionOptions near = sphere_options();
-  std::optional<Session> session;
-  std::optional<LogMapSolver> march;
+  const Sphere sphere;
+  const trimesh::TriangleMeshSurface& surface = sphere.surface;
+  const Session session{surface, sphere.geometry, sphere_options()};
 };
 
-TEST_F(LargeViewerSession, MarchesMaps) {
-  ASSERT_GT(large.surface.graph().size(), 200'000);
-  const auto expected = large.surface.to_rows(march->solve(large.surface.source(Row{7}).source, {.radius = 0.05}));
-  const Answer answer = session->answer("map", request({{"source", {{"row", 7}}}}));
-  ASSERT_EQ(answer.status, 200) << answer.body;
-  expect_same(expected, Unpacked(answer.body), scale_of(*session));
+TEST_F(ViewerSession, MapsHaveTheSettingsOfTheRequest) {
+  const auto usual = LogMapSolver(surface.graph()).solve(surface.source(Row{7}).source);
+  expect_same(bundle_answer(session, "map", from_row(7)), surface.to_rows(usual), scale_of(session));
+
+  const LogMapSolver solver(surface.graph(), {.t_coef = 2});
+  const auto localized =
+      solver.solve(surface.source(Row{7}, Vec3{0, 0.3, 1}).source, {.variant = Variant::localized, .radius = 1});
+  const json settings = {{"variant", "localized"}, {"t_coef", 2}, {"radius", 1}, {"u_axis", {0, 0.3, 1}}};
+  const Bundle heat = bundle_answer(session, "map", from_row(7, settings));
+  expect_same(heat, surface.to_rows(localized), scale_of(session));
+  EXPECT_EQ(heat.meta.at("command"),
+            "ahm logmap sphere.ply --source 7 -o map.csv --method heat --variant localized --t-coef 2 --radius 1 "
+            "--u-axis=0,0.3,1");
+
+  const FacePoint point{11, {0.2, 0.3, 0.5}};
+  const auto exact = ExactGeodesics(surface).log_map(point, surface.source(point).frame->x, {.frames = true});
+  const Bundle found =
+      bundle_answer(session, "map", {{"source", {{"face", 11}, {"weights", {0.2, 0.3, 0.5}}}}, {"method", "exact"}});
+  expect_same(found, surface.to_rows(exact), scale_of(session));
+  EXPECT_EQ(found.meta.at("spec"), "face:11:0.2,0.3,0.5");
+  EXPECT_EQ(found.meta.at("command"), "ahm logmap sphere.ply --source face:11:0.2,0.3,0.5 -o map.csv --method exact");
 }
 
-TEST_F(LargeViewerSession, MarchesStrokes) {
+TEST_F(ViewerSession, ARadiusOfNullIsNoRadius) {
+  SessionOptions options = sphere_options();
+  options.settings.radius = 0.5;
+  const Session near(surface, sphere.geometry, options);
+  const auto count_ok = [&](const json& more) {
+    const auto status = bundle_answer(near, "map", from_row(7, more)).array<std::uint8_t>("status");
+    return std::ranges::count(status, static_cast<std::uint8_t>(Status::ok));
+  };
+  const auto all = static_cast<std::ptrdiff_t>(sphere.mesh.positions.size());
+  EXPECT_LT(count_ok(json::object()), all);
+  EXPECT_EQ(count_ok({{"radius", nullptr}}), all);
+}
+
+/// On large surfaces, maps, strokes and tool paths within a radius are marched; no factorization is needed.
+TEST(LargeViewerSession, MarchesWithinARadius) {
+  const Sphere sphere(142);
+  const auto& surface = sphere.surface;
+  ASSERT_GT(surface.graph().size(), 200'000);
+  SessionOptions options = sphere_options();
+  options.settings.radius = 0.05;
+  const Session session(surface, sphere.geometry, options);
+  const LogMapSolver march(surface.graph(), {.strategy = Strategy::march});
+  const double scale = scale_of(session);
+  const Source source = surface.source(Row{7}).source;
+  expect_same(bundle_answer(session, "map", from_row(7)), surface.to_rows(march.solve(source, {.radius = 0.05})),
+              scale);
+
   const std::vector<CurvePoint> ends{SurfacePoint(Row{7}), SurfacePoint(Row{9})};
-  const SurfaceCurve curve = draw_curve(large.surface, ends);
-  const double edge = large.surface.graph().mean_edge_length() * large.surface.graph().length_unit();
-  const LogMap map = march->solve(curve.source, {.radius = 0.05 + 2 * edge});
-  const auto expected = rows_from_curve(large.surface, map, curve, 0.05);
-  const Answer answer = session->answer("stroke", request({{"points", {{{"row", 7}}, {{"row", 9}}}}}));
-  ASSERT_EQ(answer.status, 200) << answer.body;
-  const Unpacked bundle(answer.body);
-  expect_same(expected, bundle, scale_of(*session));
-  EXPECT_EQ(bundle.meta.at("command"), "ahm stroke sphere.ply --curve '7 9' -o stroke.csv --radius 0.05");
-}
+  const SurfaceCurve curve = draw_curve(surface, ends);
+  const double edge = surface.graph().mean_edge_length() * surface.graph().length_unit();
+  const LogMap map = march.solve(curve.source, {.radius = 0.05 + 2 * edge});
+  const Bundle stroke = bundle_answer(session, "stroke", stroke_between(7, 9));
+  expect_same(stroke, rows_from_curve(surface, map, curve, 0.05), scale);
+  EXPECT_EQ(stroke.meta.at("pattern"), "grid");
+  EXPECT_GT(stroke.meta.at("curve").size(), 2U);
+  EXPECT_EQ(stroke.meta.at("command"), "ahm stroke sphere.ply --curve '7 9' -o stroke.csv --radius 0.05");
 
-TEST_F(LargeViewerSession, MarchesToolPathsToTheirOwnRadius) {
-  const SurfaceSource source = large.surface.source(Row{7});
-  const LogMap map = march->solve(source.source, {.frames = true});
-  const CoveragePath expected =
-      coverage_path(large.surface, inverse_map(large.surface, map), {.radius = 0.1, .spacing = 0.02});
-  const Answer answer = session->answer(
-      "coverage", request({{"source", {{"row", 7}}}, {"cover", 0.1}, {"spacing", 0.02}, {"pattern", "raster"}}));
-  ASSERT_EQ(answer.status, 200) << answer.body;
-  const json path = json::parse(answer.body);
+  const CoveragePath expected = coverage_path(surface, inverse_map(surface, march.solve(source, {.frames = true})),
+                                              {.radius = 0.1, .spacing = 0.02});
+  const json path = json_answer(session, "coverage", from_row(7, tool_path(0.1, 0.02, "raster")));
   EXPECT_EQ(path.at("points").size(), expected.points.size());
   EXPECT_EQ(path.at("pieces").size(), static_cast<std::size_t>(expected.pieces));
+  EXPECT_GT(path.at("covered").get<double>(), 0.9);
   EXPECT_EQ(path.at("command"),
             "ahm coverage sphere.ply --source 7 --radius 0.1 --spacing 0.02 --pattern raster -o path.csv");
 }
 
-TEST_F(ViewerSession, KnowsTheFaceAndTheRowsOfEveryTriangle) {
-  const Unpacked bundle(session.answer("surface", {}).body);
+TEST_F(ViewerSession, TrianglesHaveTheirFacesAndRows) {
+  const Bundle bundle = surface_of(session);
   const auto triangles = bundle.array<std::uint32_t>("triangles");
   const auto points = bundle.array<std::int32_t>("points"), faces = bundle.array<std::int32_t>("faces");
   const auto positions = bundle.array<float>("positions");
-  const double scale = bundle.meta.at("scale");
-  ASSERT_EQ(faces.size(), sphere.geometry.face_count());
+  ASSERT_EQ(faces.size(), sphere.mesh.faces.size());
   ASSERT_EQ(triangles.size(), 3 * faces.size());
   for (std::size_t t = 0; t < faces.size(); ++t)
     for (std::size_t k = 0; k < 3; ++k)
-      EXPECT_EQ(points[triangles[3 * t + k]], sphere.geometry.face(static_cast<std::size_t>(faces[t]))[k]);
+      EXPECT_EQ(points[triangles[3 * t + k]], sphere.mesh.faces[static_cast<std::size_t>(faces[t])][k]);
   for (std::size_t i = 0; i < points.size(); ++i)
     for (std::size_t c = 0; c < 3; ++c)
-      EXPECT_NEAR(positions[3 * i + c] * scale + bundle.meta.at("center")[c].get<double>(),
-                  sphere.geometry.points[static_cast<std::size_t>(points[i])][c], 1e-6);
+      EXPECT_NEAR(positions[3 * i + c] * scale_of(session) + bundle.meta.at("center")[c].get<double>(),
+                  sphere.mesh.positions[static_cast<std::size_t>(points[i])][c], 1e-6);
 }
 
-TEST_F(ViewerSession, FindsPathsStrokesAndCoverage) {
-  const json path = json::parse(session.answer("path", request({{"from", {{"row", 0}}}, {"to", {{"row", 30}}}})).body);
-  const ExactGeodesics geodesics(sphere.surface);
+TEST_F(ViewerSession, PathsAreShortest) {
+  const json path = json_answer(session, "path", path_between(0, 30));
   const std::array<SurfacePoint, 2> ends{Row{0}, Row{30}};
-  EXPECT_NEAR(path.at("length").get<double>() * scale_of(session), geodesics.path(ends).length, 1e-12);
+  EXPECT_NEAR(path.at("length").get<double>() * scale_of(session), ExactGeodesics(surface).path(ends).length, 1e-12);
   EXPECT_EQ(path.at("command"), "ahm path sphere.ply --from 0 --to 30 -o path.obj");
-
-  const Answer stroke = session.answer("stroke", request({{"points", {{{"row", 0}}, {{"row", 30}}}}}));
-  ASSERT_EQ(stroke.status, 200) << stroke.body;
-  EXPECT_EQ(Unpacked(stroke.body).meta.at("pattern"), "grid");
-  EXPECT_GT(Unpacked(stroke.body).meta.at("curve").size(), 2U);
-
-  const Answer covered = session.answer(
-      "coverage", request({{"source", {{"row", 0}}}, {"cover", 0.5}, {"spacing", 0.1}, {"pattern", "spiral"}}));
-  ASSERT_EQ(covered.status, 200) << covered.body;
-  EXPECT_GT(json::parse(covered.body).at("points").size(), 20U);
-  EXPECT_GT(json::parse(covered.body).at("covered").get<double>(), 0.9);
 }
 
-TEST_F(ViewerSession, RefusesWhatItCannotAnswer) {
-  for (const json& bad :
-       {json{{"source", {{"row", 1000000}}}}, json{{"source", {{"row", -1}}}}, json{{"source", {{"row", 1.5}}}},
-        json{{"source", "7"}}, json::object(), json{{"source", {{"face", 3}, {"weights", {1, 1, 1}}}}},
-        json{{"source", {{"face", 3}, {"weights", {1}}}}}, json{{"source", {{"row", 7}}}, {"method", "magic"}},
-        json{{"source", {{"row", 7}}}, {"t_coef", 0}}, json{{"source", {{"row", 7}}}, {"radius", -1}},
-        json{{"source", {{"row", 7}}}, {"u_axis", {0, 0, 0}}}}) {
-    const Answer answer = session.answer("map", request(bad));
-    EXPECT_EQ(answer.status, 400) << bad;
-    EXPECT_FALSE(error_of(answer).empty());
+TEST_F(ViewerSession, RefusesUnsuitableValues) {
+  for (const json& source : {json(at_row(1000000)), json(at_row(-1)), json{{"row", 1.5}}, json("7"), json(),
+                             json{{"face", 3}, {"weights", {1, 1, 1}}}, json{{"face", 3}, {"weights", {1}}}}) {
+    const Answer found = answer(session, "map", {{"source", source}});
+    EXPECT_EQ(found.status, 400) << source;
+    EXPECT_FALSE(json::parse(found.body).at("error").get<std::string>().empty());
   }
-  EXPECT_EQ(session.answer("passwd", request({})).status, 404);
-  EXPECT_EQ(session.answer("map", request({{"source", {{"row", 7}}}})).status, 200);
+  for (const json& more :
+       {json{{"method", "magic"}}, json{{"t_coef", 0}}, json{{"radius", -1}}, json{{"u_axis", {0, 0, 0}}}})
+    EXPECT_EQ(answer(session, "map", from_row(7, more)).status, 400) << more;
+  EXPECT_EQ(answer(session, "map", json::object()).status, 400);
+  EXPECT_EQ(answer(session, "passwd", json::object()).status, 404);
+  EXPECT_EQ(answer(session, "map", from_row(7)).status, 200);
 }
 
-TEST_F(ViewerSession, OfManyRequestsOfAClientTheNewestIsAnswered) {
-  const json source = {{"source", {{"row", 3}}}}, cover = {{"cover", 0.5}, {"spacing", 0.1}, {"pattern", "raster"}};
-  json tool_path = source;
-  tool_path.update(cover);
-  for (const auto& [name, body] : {std::pair("map", request(source)), std::pair("coverage", request(tool_path)),
-                                   std::pair("path", request({{"from", {{"row", 0}}}, {"to", {{"row", 30}}}}))}) {
+TEST_F(ViewerSession, RefusesBodiesThatNoPageSends) {
+  std::vector<std::string> bodies{"",
+                                  "{",
+                                  "null",
+                                  "[]",
+                                  "3",
+                                  "\"map\"",
+                                  std::string(100'000, '['),
+                                  std::string(1000, '\0'),
+                                  "\xff\xfe{}",
+                                  R"({"client": 3})",
+                                  R"({"client": null})",
+                                  R"({"client": "a", "source": {"row": 1e999}})",
+                                  R"({"client": "a", "source": {"row": 18446744073709551615}})",
+                                  R"({"client": "a", "source": {"face": 0, "weights": [1e308, -1e308, 1]}})",
+                                  R"({"client": ")" + std::string(65, 'a') + R"(", "source": {"row": 0}})"};
+  std::string deep = R"({"client": "a", "source": )";
+  for (int k = 0; k < 50'000; ++k) deep += R"({"row":)";
+  bodies.push_back(deep + "0" + std::string(50'000, '}') + "}");
+  std::mt19937 random(1);
+  for (int k = 0; k < 200; ++k) {
+    std::string noise(random() % 200, ' ');
+    for (char& c : noise) c = static_cast<char>(random());
+    bodies.push_back(noise);
+  }
+  for (const char* name : {"map", "stroke", "path", "coverage", "export"})
+    for (const std::string& body : bodies) {
+      const Answer found = session.answer(name, body);
+      EXPECT_EQ(found.status, 400) << name << ' ' << body.substr(0, 60);
+      EXPECT_TRUE(json::parse(found.body).contains("error"));
+    }
+  EXPECT_EQ(answer(session, "map", from_row(0)).status, 200);
+}
+
+TEST_F(ViewerSession, AnswersTheNewestOfManyRequests) {
+  for (const auto& [name, request] : {std::pair("map", from_row(3)),
+                                      {"path", path_between(0, 30)},
+                                      {"coverage", from_row(3, tool_path(0.5, 0.1, "raster"))}}) {
     std::vector<Answer> answers(24);
     {
       std::vector<std::jthread> threads;
-      for (Answer& answer : answers)
-        threads.emplace_back([&, name = name, body = body] { answer = session.answer(name, body); });
+      for (Answer& found : answers)
+        threads.emplace_back([&, name = name, request = request] { found = answer(session, name, request); });
     }
-    for (const Answer& answer : answers) EXPECT_TRUE(answer.status == 200 || answer.status == 409) << answer.body;
-    EXPECT_EQ(session.answer(name, body).status, 200);
+    for (const Answer& found : answers) EXPECT_TRUE(found.status == 200 || found.status == 409) << found.body;
+    EXPECT_EQ(answer(session, name, request).status, 200);
   }
 }
 
-TEST_F(ViewerSession, ARequestThatIsOvertakenByANewerOneIsTheOneCancelled) {
-  const auto numbered = [&](const json& number, const char* client = "a") {
-    return session.answer("map", json{{"source", {{"row", 3}}}, {"number", number}, {"client", client}}.dump()).status;
+/// Requests of each client are numbered. Strokes are of the same kind as maps.
+TEST_F(ViewerSession, CancelsRequestsOlderThanTheNewest) {
+  const auto status = [&](const char* name, json request, const json& number, const char* client = "a") {
+    request["number"] = number, request["client"] = client;
+    return session.answer(name, request.dump()).status;
   };
-  EXPECT_EQ(numbered(5), 200);
-  EXPECT_EQ(numbered(4), 409);
-  EXPECT_EQ(numbered(6), 200);
-  EXPECT_EQ(numbered(1, "b"), 200);  // another client counts for itself
-  EXPECT_EQ(numbered(-1), 400);
-  EXPECT_EQ(numbered("7"), 400);
-  const json stroke = {{"points", {{{"row", 0}}, {{"row", 30}}}}, {"number", 2}, {"client", "a"}};
-  EXPECT_EQ(session.answer("stroke", stroke.dump()).status, 409);  // of the same kind as a map
+  EXPECT_EQ(status("map", from_row(3), 5), 200);
+  EXPECT_EQ(status("map", from_row(3), 4), 409);
+  EXPECT_EQ(status("map", from_row(3), 6), 200);
+  EXPECT_EQ(status("map", from_row(3), 1, "b"), 200);
+  EXPECT_EQ(status("map", from_row(3), -1), 400);
+  EXPECT_EQ(status("map", from_row(3), "7"), 400);
+  EXPECT_EQ(status("stroke", stroke_between(0, 30), 2), 409);
 }
 
-TEST(ViewerSessionOfACloud, ShowsAndTakesWhatIsLeftOfAThinnedOne) {
+/// Rows that were left out or have no finite position are shown and chosen as the nearest remaining row.
+TEST(ViewerSessionOfACloud, HasTheRowsOfAThinnedCloud) {
   io::Geometry geometry;
   std::vector<Row> kept;
+  std::set<std::int32_t> expected;
   for (int x = 0; x < 40; ++x)
     for (int y = 0; y < 40; ++y) {
-      if (x % 2 == 0 && y % 2 == 0) kept.emplace_back(static_cast<Index>(geometry.points.size()));
+      const auto row = static_cast<Index>(geometry.points.size());
+      if (x % 2 == 0 && y % 2 == 0) kept.emplace_back(row), expected.insert(row);
       geometry.points.push_back({0.1 * x, 0.1 * y + 0.03 * (x % 2), 0});
     }
   geometry.points.push_back({NAN, 0, 0});
   const auto cloud = pointcloud::PointCloudSurface::build(geometry.points, {}, {.rows = kept});
+  const auto nearest = [&](std::size_t row) { return cloud.nearest_row(geometry.points[row]).index; };
   SessionOptions options = sphere_options();
-  options.source = Row(41);  // beside row 0
+  options.source = Row(41);
   const Session session(cloud, geometry, options);
-  const auto points = Unpacked(session.answer("surface", {}).body).array<std::int32_t>("points");
-  std::set<std::int32_t> drawn(points.begin(), points.end()), expected;
-  for (const Row row : kept) expected.insert(row.index);
-  EXPECT_EQ(drawn, expected);
-  EXPECT_EQ(json::parse(session.answer("info", {}).body).at("source").at("row"),
-            cloud.nearest_row(geometry.points[41]).index);
-
-  const Answer answer = session.answer("map", request({{"source", {{"row", 83}}}}));
-  ASSERT_EQ(answer.status, 200) << answer.body;
-  EXPECT_EQ(Unpacked(answer.body).meta.at("spec"), std::to_string(cloud.nearest_row(geometry.points[83]).index));
-  EXPECT_EQ(session.answer("stroke", request({{"points", {{{"row", 1}}, {{"row", 83}}}}})).status, 200);
-  EXPECT_EQ(session.answer("path", request({{"from", {{"row", 1}}}, {"to", {{"row", 83}}}})).status, 200);
-  EXPECT_EQ(session.answer("map", request({{"source", {{"row", 1600}}}})).status, 400);  // it is nowhere
-  EXPECT_EQ(session.answer("map", request({{"source", {{"row", 1601}}}})).status, 400);
+  const auto points = surface_of(session).array<std::int32_t>("points");
+  EXPECT_EQ(std::set(points.begin(), points.end()), expected);
+  EXPECT_EQ(json::parse(session.answer("info", {}).body).at("source").at("row"), nearest(41));
+  EXPECT_EQ(bundle_answer(session, "map", from_row(83)).meta.at("spec"), std::to_string(nearest(83)));
+  EXPECT_EQ(answer(session, "stroke", stroke_between(1, 83)).status, 200);
+  EXPECT_EQ(answer(session, "path", path_between(1, 83)).status, 200);
+  for (const int row : {1600, 1601}) EXPECT_EQ(answer(session, "map", from_row(row)).status, 400);
 }
 
-TEST(ViewerSessionOfACloud, TellsGradientsOfEveryDiscAndHasNoPaths) {
+/// In the plane the map is the identity.
+TEST(ViewerSessionOfACloud, HasGradientsOfEveryDiscAndPaths) {
   io::Geometry geometry;
   for (int x = 0; x < 20; ++x)
     for (int y = 0; y < 20; ++y) geometry.points.push_back({0.1 * x, 0.1 * y, 0});
   const auto cloud = pointcloud::PointCloudSurface::build(geometry.points);
   const Session session(cloud, geometry, sphere_options());
-  const Answer answer = session.answer("map", request({{"source", {{"row", 0}}}, {"u_axis", {1, 0, 0}}}));
-  ASSERT_EQ(answer.status, 200) << answer.body;
-  const Unpacked map(answer.body);
+  const Bundle map = bundle_answer(session, "map", from_row(0, {{"u_axis", {1, 0, 0}}}));
   const auto slopes = map.array<std::uint8_t>("slopes");
   ASSERT_EQ(slopes.size(), 6 * geometry.points.size());
   const double steepest = map.meta.at("steepest");
-  const auto points = Unpacked(session.answer("surface", {}).body).array<std::int32_t>("points");
-  const std::set<std::int32_t> rows(points.begin(), points.end());
-  EXPECT_EQ(rows.size(), geometry.points.size());    // each once, however they are scattered
-  for (std::size_t k = 0; k < points.size(); ++k) {  // in the plane the map is the identity
-    const double du = steepest * (2.0 * slopes[6 * k] - 254) / 255,
-                 dv = steepest * (2.0 * slopes[6 * k + 4] - 254) / 255;
-    EXPECT_NEAR(du, 1, steepest * 2 / 255) << points[k];
-    EXPECT_NEAR(std::abs(dv), 1, steepest * 2 / 255) << points[k];
+  const auto points = surface_of(session).array<std::int32_t>("points");
+  EXPECT_EQ(std::set(points.begin(), points.end()).size(), geometry.points.size());
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const auto slope = [&](std::size_t at) { return steepest * (2.0 * slopes[6 * k + at] - 254) / 255; };
+    EXPECT_NEAR(slope(0), 1, steepest * 2 / 255) << points[k];
+    EXPECT_NEAR(std::abs(slope(4)), 1, steepest * 2 / 255) << points[k];
   }
-  const json path = json::parse(session.answer("path", request({{"from", {{"row", 0}}}, {"to", {{"row", 3}}}})).body);
-  const Vec3 &a = geometry.points[0], &b = geometry.points[3];
-  EXPECT_NEAR(path.at("length").get<double>() * scale_of(session), std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]),
-              1e-9);
+  const json path = json_answer(session, "path", path_between(0, 3));
+  EXPECT_NEAR(path.at("length").get<double>() * scale_of(session), 0.3, 1e-9);
 }
 
-TEST(ViewerSessionExport, SendsWhatItsWriterWrites) {
-  const Sphere sphere;
+TEST_F(ViewerSession, ExportsTheFilesOfItsWriters) {
   SessionOptions options = sphere_options();
   for (const char* what : {"map", "stroke", "path", "coverage", "decal"}) options.formats[what] = {"csv"};
   std::filesystem::path folder;
-  options.write = [&](const std::filesystem::path& file, const RowLogMap& rows, const std::vector<double>& quality) {
+  std::vector<Vec3> path;
+  CoveragePath covered;
+  DecalOptions decal_options;
+  using File = std::filesystem::path;
+  options.write = [&](const File& file, const RowLogMap& rows, const std::vector<double>& quality) {
     folder = file.parent_path();
     std::ofstream(file) << rows.u.size() << ' ' << quality.size();
   };
-  std::vector<Vec3> path;
-  CoveragePath covered;
-  DecalOptions laid;
-  options.write_path = [&](const std::filesystem::path& file, const std::vector<Vec3>& points) {
+  options.write_path = [&](const File& file, const std::vector<Vec3>& points) {
     std::ofstream(file) << (path = points).size();
   };
-  options.write_coverage = [&](const std::filesystem::path& file, const CoveragePath& points) {
+  options.write_coverage = [&](const File& file, const CoveragePath& points) {
     std::ofstream(file) << (covered = points).points.size();
   };
-  options.write_decal = [&](const std::filesystem::path& file, const InverseMap&, const DecalOptions& decal,
-                            const Image& image) {
-    laid = decal;
+  options.write_decal = [&](const File& file, const InverseMap&, const DecalOptions& decal, const Image& image) {
+    decal_options = decal;
     std::ofstream(file) << image.width << ' ' << image.height;
   };
-  const Session session(sphere.surface, sphere.geometry, options);
-  const auto sent = [&](json wanted) {
-    wanted["format"] = "csv";
-    return session.answer("export", request(wanted));
+  const Session exporting(surface, sphere.geometry, options);
+  const auto exported = [&](const char* what, json request, const char* format = "csv") {
+    request["what"] = what, request["format"] = format;
+    return answer(exporting, "export", request);
   };
-  const std::string n = std::to_string(sphere.geometry.points.size());
-  const json at = {{"row", 0}};
-  EXPECT_EQ(sent({{"what", "map"}, {"source", at}}).body, n + " " + n);
-  EXPECT_EQ(sent({{"what", "stroke"}, {"points", {at, {{"row", 30}}}}}).body, n + " " + n);
+  const std::string n = std::to_string(sphere.mesh.positions.size());
+  EXPECT_EQ(exported("map", from_row(0)).body, n + " " + n);
+  EXPECT_EQ(exported("stroke", stroke_between(0, 30)).body, n + " " + n);
   EXPECT_FALSE(folder.empty());
   EXPECT_FALSE(std::filesystem::exists(folder));
 
-  const std::string path_points = sent({{"what", "path"}, {"from", at}, {"to", {{"row", 30}}}}).body;
-  const ExactGeodesics geodesics(sphere.surface);
+  const ExactGeodesics geodesics(surface);
   const std::array ends{SurfacePoint(Row{0}), SurfacePoint(Row{30})};
   const auto direct = geodesics.paths(std::span(&ends, 1)).front();
-  ASSERT_EQ(path_points, std::to_string(direct.points.size()));
+  ASSERT_EQ(exported("path", path_between(0, 30)).body, std::to_string(direct.points.size()));
   for (std::size_t k = 0; k < path.size(); ++k) EXPECT_EQ(path[k], geodesics.position(direct.points[k]));
 
-  const json cover = {{"what", "coverage"}, {"source", at}, {"cover", 0.5}, {"spacing", 0.1}, {"pattern", "spiral"}};
-  ASSERT_EQ(sent(cover).status, 200);
-  const LogMap map = LogMapSolver(sphere.surface.graph()).solve(sphere.surface.source(Row{0}).source, {.frames = true});
-  const CoveragePath wanted = coverage_path(sphere.surface, inverse_map(sphere.surface, map),
-                                            {.radius = 0.5, .spacing = 0.1, .pattern = CoveragePattern::spiral});
-  ASSERT_EQ(covered.points.size(), wanted.points.size());
-  for (std::size_t k = 0; k < wanted.points.size(); ++k)
-    EXPECT_EQ(covered.points[k].position, wanted.points[k].position);
+  ASSERT_EQ(exported("coverage", from_row(0, tool_path(0.5, 0.1, "spiral"))).status, 200);
+  const LogMap map = LogMapSolver(surface.graph()).solve(surface.source(Row{0}).source, {.frames = true});
+  const CoveragePath expected = coverage_path(surface, inverse_map(surface, map),
+                                              {.radius = 0.5, .spacing = 0.1, .pattern = CoveragePattern::spiral});
+  ASSERT_EQ(covered.points.size(), expected.points.size());
+  for (std::size_t k = 0; k < expected.points.size(); ++k)
+    EXPECT_EQ(covered.points[k].position, expected.points[k].position);
 
-  // A PNG of 2 x 1 pixels.
-  json decal = {
-      {"what", "decal"},
-      {"source", at},
-      {"size", 0.4},
-      {"angle", 90},
-      {"image", "iVBORw0KGgoAAAANSUhEUgAAAAIAAAABCAIAAAB7QOjdAAAADUlEQVR4nGP4zwAE/wEHAAH/4iOeWQAAAABJRU5ErkJggg=="}};
-  if (io::has_images()) {
-    EXPECT_EQ(sent(decal).body, "2 1");
-    EXPECT_EQ(laid.width, 0.4);
-    EXPECT_EQ(laid.height, 0.2);
-    EXPECT_EQ(laid.angle, std::numbers::pi / 2);
+  const auto decal = [&](const char* image) {
+    return exported("decal", from_row(0, {{"size", 0.4}, {"angle", 90}, {"image", image}}));
+  };
+  if (io::has_images()) {  // a PNG of 2 x 1 pixels
+    EXPECT_EQ(
+        decal("iVBORw0KGgoAAAANSUhEUgAAAAIAAAABCAIAAAB7QOjdAAAADUlEQVR4nGP4zwAE/wEHAAH/4iOeWQAAAABJRU5ErkJggg==").body,
+        "2 1");
+    EXPECT_EQ(decal_options.width, 0.4);
+    EXPECT_EQ(decal_options.height, 0.2);
+    EXPECT_EQ(decal_options.angle, std::numbers::pi / 2);
   }
-  for (const char* image : {"", "?", "iVBORw0KGgo=", "../../etc/passwd"}) {
-    decal["image"] = image;
-    EXPECT_EQ(sent(decal).status, 400) << image;
-  }
-  EXPECT_EQ(session.answer("export", request({{"what", "map"}, {"source", at}, {"format", "../csv"}})).status, 400);
-  EXPECT_EQ(sent({{"what", "surface"}, {"source", at}}).status, 400);
+  for (const char* image : {"", "?", "iVBORw0KGgo=", "../../etc/passwd"}) EXPECT_EQ(decal(image).status, 400) << image;
+  EXPECT_EQ(exported("map", from_row(0), "../csv").status, 400);
+  EXPECT_EQ(exported("surface", from_row(0)).status, 400);
 }
 
-TEST(ViewerCommand, CountsTheFacesOfTheFileAfterARepair) {
+TEST(ViewerCommand, NumbersFacesAsTheFileDoes) {
   const std::vector<Vec3> points{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
   const std::vector<Offset> begin{0, 3, 6, 9};
   const std::vector<Index> corners{0, 1, 1, 0, 1, 2, 0, 2, 3};
@@ -386,7 +368,7 @@ TEST(ViewerCommand, CountsTheFacesOfTheFileAfterARepair) {
   EXPECT_EQ(spec(surface, FacePoint{1, {0.25, 0.25, 0.5}}), "face:2:0.25,0.25,0.5");
 }
 
-TEST(ViewerCommand, QuotesWhatAShellWouldTakeApart) {
+TEST(ViewerCommand, QuotesSpecialCharacters) {
   EXPECT_EQ(detail::shell_word("scan.ply"), "scan.ply");
   EXPECT_EQ(detail::shell_word("my scan.ply"), "'my scan.ply'");
   EXPECT_EQ(detail::shell_word("it's; rm -rf $HOME"), "'it'\\''s; rm -rf $HOME'");

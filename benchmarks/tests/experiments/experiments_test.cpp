@@ -76,7 +76,7 @@ TEST(ConvergenceExperiment, TheAdaptiveVariantIsOfFirstOrder) {
 TEST(TrustExperiment, VectorsThatAreTrustedAreRight) {
   const Table& table = toy("trust");
   EXPECT_GE(table.where("as", "triangles").smallest("area under curve"), 0.9);
-  EXPECT_GE(table.where("as", "triangles").smallest("right among trusted"), 0.95);
+  EXPECT_GE(table.where("as", "triangles").smallest("right among kept"), 0.95);
   EXPECT_LE(table.where("as", "triangles").where("method", "polar").largest("vector 95%"), 0.05);
 }
 

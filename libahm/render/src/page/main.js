@@ -65,7 +65,7 @@ Ahm.Viewer = class {
     canvas.addEventListener("pointermove", (event) => this.move(event));
     canvas.addEventListener("pointerup", (event) => this.release(event));
     canvas.addEventListener("pointercancel", () => this.end_drag());
-    canvas.addEventListener("pointerleave", () => { if (!this.dragging) this.panel.tell(null); });
+    canvas.addEventListener("pointerleave", () => { if (!this.dragging) this.panel.show_values(null); });
     window.addEventListener("keydown", (event) => this.key(event));
     new ResizeObserver(() => this.stage.resize()).observe(this.element("stage"));
   }
@@ -98,7 +98,7 @@ Ahm.Viewer = class {
     requestAnimationFrame(() => {
       this.pointing = false;
       const hit = this.stage.pick(...this.pointer);
-      this.panel.tell(hit);
+      this.panel.show_values(hit);
       if (this.dragging && hit) this.drag(hit);
     });
   }

@@ -45,7 +45,7 @@ Ahm.Panel = class {
     this.element("spec").textContent = map.spec || "";
     this.element("source_section").hidden = !map.spec;
     this.set_ring();
-    this.tell(this.told);
+    this.show_values(this.hit);
   }
 
   set_field(name) {
@@ -94,8 +94,8 @@ Ahm.Panel = class {
   }
 
   // Displays the values of a row. @param hit  the point under the pointer; null: none
-  tell(hit) {
-    this.told = hit;
+  show_values(hit) {
+    this.hit = hit;
     const { map, surface } = this.stage, put = (id, ...numbers) => this.put(this.element("at_" + id), numbers);
     const names = ["row", "status", "position", "u", "v", "distance", "spread"];
     if (!hit) return names.forEach((name) => put(name, "–"));

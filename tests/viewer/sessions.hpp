@@ -1,9 +1,10 @@
 /// \file
-/// A sphere of triangles and a session on it, for the tests of the viewer.
+/// A sphere of triangles, sessions on it, and their answers.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <cstring>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -17,28 +18,19 @@ namespace ahm::viewer::test {
 using nlohmann::json;
 
 struct Sphere {
-  io::Geometry geometry;
+  ahm::test::Mesh mesh;
   trimesh::TriangleMeshSurface surface;
+  io::Geometry geometry;
 
-  explicit Sphere(Index parts = 8) : geometry(make(parts)), surface(build(geometry)) {}
-
-  static io::Geometry make(Index parts) {
-    const auto mesh = ahm::test::icosphere(parts);
-    io::Geometry geometry;
+  explicit Sphere(Index subdivisions = 8)
+      : mesh(ahm::test::icosphere(subdivisions)),
+        surface(trimesh::TriangleMeshSurface::build(mesh.positions, mesh.faces)) {
     geometry.points = mesh.positions;
     geometry.face_begin.push_back(0);
     for (const Triangle& t : mesh.faces) {
       geometry.face_vertices.insert(geometry.face_vertices.end(), t.begin(), t.end());
       geometry.face_begin.push_back(static_cast<Offset>(geometry.face_vertices.size()));
     }
-    return geometry;
-  }
-
-  static trimesh::TriangleMeshSurface build(const io::Geometry& geometry) {
-    std::vector<Triangle> faces;
-    for (std::size_t f = 0; f < geometry.face_count(); ++f)
-      faces.push_back({geometry.face(f)[0], geometry.face(f)[1], geometry.face(f)[2]});
-    return trimesh::TriangleMeshSurface::build(geometry.points, faces);
   }
 };
 
@@ -48,16 +40,16 @@ inline SessionOptions sphere_options() {
   return options;
 }
 
-/// A bundle taken apart, without the page's script.
-struct Unpacked {
+/// The JSON text and the arrays of a bundle.
+struct Bundle {
   json meta;
   std::string data;
 
-  explicit Unpacked(const std::string& bundle) {
+  explicit Bundle(const std::string& bytes) {
     std::uint32_t length = 0;
-    std::memcpy(&length, bundle.data() + 4, sizeof length);
-    meta = json::parse(bundle.substr(8, length));
-    data = bundle.substr(8 + length);
+    std::memcpy(&length, bytes.data() + 4, sizeof length);
+    meta = json::parse(bytes.substr(8, length));
+    data = bytes.substr(8 + length);
   }
 
   template <class T>
