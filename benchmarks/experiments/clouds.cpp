@@ -57,7 +57,7 @@ void compare(const pointcloud::PointCloudSurface& cloud, std::span<const double>
     const double line = distance(points[i], points[source]), error = std::abs(std::max(distances[i], line) - truth[i]);
     found.error.push_back(error / truth[i]);
     found.bounded += distances[i] <= line;
-    if (quality.empty() || !(quality[i] >= trusted_quality)) continue;
+    if (quality.empty() || !(quality[i] >= reliable_quality)) continue;
     found.good_quality_error.push_back(found.error.back());
   }
 }

@@ -117,7 +117,7 @@ std::optional<double> area_under_curve(const MapErrors& found) {
   return right_ones > 0 && wrong > 0 ? std::optional(1 - above / (right_ones * wrong)) : std::nullopt;
 }
 
-/// Shares of the vectors: right ones, those of quality >= `trusted_quality`, and the right ones among the latter.
+/// Shares of the vectors: right ones, those of quality >= `reliable_quality`, and the right ones among the latter.
 struct Shares {
   double right, kept, right_among_kept;
 };
@@ -125,7 +125,7 @@ struct Shares {
 Shares shares_of(const MapErrors& found) {
   double right_ones = 0, kept = 0, both = 0;
   for (std::size_t k = 0; k < found.quality.size(); ++k) {
-    const bool is_right = found.vector_error[k] < right, is_kept = found.quality[k] >= trusted_quality;
+    const bool is_right = found.vector_error[k] < right, is_kept = found.quality[k] >= reliable_quality;
     right_ones += is_right, kept += is_kept, both += is_right && is_kept;
   }
   const auto all = static_cast<double>(found.quality.size());

@@ -31,7 +31,7 @@ void measure(const Surface& surface, Table& table) {
         continue;
       const auto a = adaptive.coordinates(Vertex(i)), l = localized.coordinates(Vertex(i));
       all.push_back(std::hypot(a[0] - l[0], a[1] - l[1]) / longest);
-      if (quality[k] >= trusted_quality) kept.push_back(all.back());
+      if (quality[k] >= reliable_quality) kept.push_back(all.back());
     }
     if (all.empty()) continue;
     table.add({surface.name(), surface.size(), (ring + 0.5) / ring_count, quantile(all, 0.5), mean(all),

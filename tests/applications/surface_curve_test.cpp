@@ -327,10 +327,10 @@ TEST(CurveQuality, IsLowAtTheCenterOfACircleAndWhereUJumps) {
         const Vec3& p = surface.positions()[r];
         const double x = p[0] - 0.5, y = p[1] - 0.5, from_middle = std::hypot(x, y);
         if (from_middle < edge || (x > 0.1 && x < 0.4 && std::abs(y) < 0.3 * edge))
-          EXPECT_LT(quality[r], trusted_quality) << p[0] << ' ' << p[1];
+          EXPECT_LT(quality[r], reliable_quality) << p[0] << ' ' << p[1];
         if (std::abs(from_middle - 0.3) > 0.1 || (x > 0 && std::abs(y) < 0.1)) continue;
         ++near_curve;
-        high += quality[r] > trusted_quality;
+        high += quality[r] > reliable_quality;
         EXPECT_NEAR(rows.distance[r], std::abs(from_middle - 0.3), edge);
       }
       EXPECT_GT(high, 0.8 * near_curve);
@@ -358,8 +358,8 @@ TEST(CurveQuality, SeparatesRightRowsFromWrongOnes) {
       const double error = std::hypot(solved.rows.u[r] - exact.u[r], solved.rows.v[r] - sign * exact.v[r]);
       const bool is_right = error < std::max(0.1 * exact.distance[r], edge_length(surface.graph()));
       right += is_right;
-      high += quality[r] > trusted_quality;
-      right_and_high += is_right && quality[r] > trusted_quality;
+      high += quality[r] > reliable_quality;
+      right_and_high += is_right && quality[r] > reliable_quality;
     }
     EXPECT_LT(right, 0.9 * static_cast<double>(quality.size()));  // otherwise there is nothing to separate
     EXPECT_GT(right_and_high, 0.95 * high);

@@ -75,7 +75,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     LocalMapOptions local;
     local.heat.threads = 1;
     local.radius = std::abs(bytes.coordinate(true));
-    local.nearest = bytes.byte() % 8;
+    local.k = bytes.byte() % 8;
     fuzz::allow_refusals([&] { (void)local_maps(graph, local); });
     fuzz::solve(graph, bytes);
   });

@@ -105,7 +105,7 @@ TEST(LocalMaps, ContainOnlyTheNearest) {
   const CsrGraph graph(planar_triangulation(30).data);
   const std::vector<Vertex> sources = every(50, graph);
   const LocalMaps all = local_maps(graph, sources, {.radius = 0.2}),
-                  few = local_maps(graph, sources, {.radius = 0.2, .nearest = 9});
+                  few = local_maps(graph, sources, {.radius = 0.2, .k = 9});
   for (std::size_t s = 0; s < sources.size(); ++s) {
     ASSERT_EQ(few.indptr[s + 1] - few.indptr[s], 9);
     for (Offset k = 0; k < 9; ++k) ASSERT_EQ(few.neighbors[few.indptr[s] + k], all.neighbors[all.indptr[s] + k]);
@@ -155,9 +155,9 @@ TEST(LocalMaps, RefuseWhatFillsTheMemory) {
   LocalMapOptions options{.radius = 10, .memory = 10'000'000};
   EXPECT_THROW(local_maps(graph, options), ResourceExhausted);  // 2000 x 2000 entries
   EXPECT_EQ(local_maps(graph, every(100, graph), options).neighbors.size(), 20u * 2000u);
-  options.nearest = 9;
+  options.k = 9;
   EXPECT_EQ(local_maps(graph, options).neighbors.size(), 9u * 2000u);
-  options.nearest = 0;
+  options.k = 0;
   options.radius = 0.1;
   EXPECT_GT(local_maps(graph, options).neighbors.size(), 2000u);
 }
@@ -169,7 +169,7 @@ TEST(LocalMaps, RefuseInvalidArguments) {
                                          {.radius = -1},
                                          {.radius = NAN},
                                          {.radius = INFINITY},
-                                         {.radius = 1, .nearest = -1},
+                                         {.radius = 1, .k = -1},
                                          {.radius = 1, .margin = -1},
                                          {.radius = 1, .heat = {.t_coef = 0}}})
     EXPECT_THROW(local_maps(graph, options), InvalidArgument);
@@ -182,7 +182,7 @@ TEST(LocalMaps, OfTheNearestAreCompleteWhereSpacingsDifferAThousandfold) {
   for (std::size_t i = 0; i < mesh.positions.size(); ++i)
     mesh.positions[i] = {std::pow(1000.0, mesh.plane[i][0]), std::pow(1000.0, mesh.plane[i][1]), 0};
   const auto surface = trimesh::TriangleMeshSurface::build(mesh.positions, mesh.faces);
-  const LocalMaps maps = local_maps(surface.graph(), {.nearest = 12});
+  const LocalMaps maps = local_maps(surface.graph(), {.k = 12});
   for (std::size_t s = 0; s < mesh.positions.size(); ++s) {
     ASSERT_EQ(maps.indptr[s + 1] - maps.indptr[s], 12);
     std::vector<double> exact;
@@ -194,7 +194,7 @@ TEST(LocalMaps, OfTheNearestAreCompleteWhereSpacingsDifferAThousandfold) {
 
 TEST(LocalMaps, OfTheNearestEndWithTheComponent) {
   const CsrGraph graph(sphere_graph(30));
-  const LocalMaps maps = local_maps(graph, {.nearest = 50});
+  const LocalMaps maps = local_maps(graph, {.k = 50});
   for (std::size_t s = 0; s < 30; ++s) EXPECT_EQ(maps.indptr[s + 1] - maps.indptr[s], 30);
 }
 

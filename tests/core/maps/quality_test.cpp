@@ -40,7 +40,7 @@ TEST(MapQuality, IsLowAtTheCutLocus) {
   for (Index r = 0; r < rings; ++r) {
     SCOPED_TRACE(r);
     // The angle between the two geodesic paths to the line decreases with the distance along the tube.
-    if (std::abs(r - 60) <= 15) EXPECT_LT(quality[r * around + around / 2], trusted_quality);
+    if (std::abs(r - 60) <= 15) EXPECT_LT(quality[r * around + around / 2], reliable_quality);
     EXPECT_GT(quality[r * around + around / 4], 0.99);
     EXPECT_GT(quality[r * around], 0.99);
   }
