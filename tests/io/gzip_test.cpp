@@ -1,10 +1,10 @@
 #include <sys/resource.h>
-#include <sys/wait.h>
 #include <zlib.h>
 
 #include "cases.hpp"
 #include "files.hpp"
 #include "streamed.hpp"
+#include "support/child_process.hpp"
 
 namespace ahm::io::test {
 namespace {
@@ -84,26 +84,22 @@ TEST_F(ReadGzip, RefusesMoreThanAThirdOfTheFreeMemory) {
   const std::string member = gzip(std::string(8 << 20, '\n'));
   for (int k = 0; k < 32; ++k) bomb += member;
   const std::filesystem::path packed = make("bomb.xyz.gz", bomb);
-  const pid_t child = ::fork();
-  if (child == 0) {
-    std::ifstream statm("/proc/self/statm");
-    rlim_t pages = 0;
-    statm >> pages;
-    const rlim_t bytes = pages * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE)) + (rlim_t{256} << 20);
-    const rlimit limit{bytes, bytes};
-    ::setrlimit(RLIMIT_AS, &limit);
-    try {
-      read(packed);
-      ::_exit(1);
-    } catch (const ResourceExhausted& error) {
-      ::_exit(std::string_view(error.what()).find("third of the free memory") == std::string_view::npos ? 2 : 0);
-    } catch (...) {
-      ::_exit(3);
-    }
-  }
-  int status = 0;
-  ASSERT_EQ(::waitpid(child, &status, 0), child);
-  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
+  EXPECT_EQ(ahm::test::status_of_child([&] {
+              std::ifstream statm("/proc/self/statm");
+              rlim_t pages = 0;
+              statm >> pages;
+              const rlim_t bytes = pages * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE)) + (rlim_t{256} << 20);
+              const rlimit limit{bytes, bytes};
+              ::setrlimit(RLIMIT_AS, &limit);
+              try {
+                read(packed);
+                return 1;
+              } catch (const ResourceExhausted& error) {
+                return std::string_view(error.what()).find("third of the free memory") == std::string_view::npos ? 2
+                                                                                                                 : 0;
+              }
+            }),
+            0);
 }
 
 TEST_F(ReadGzip, StreamsWhatItReads) {

@@ -60,7 +60,7 @@ TEST_F(PointStreams, ReadLongTexts) {
   }
 }
 
-TEST_F(PointStreams, RefuseOtherFormats) {
+TEST_F(PointStreams, RefuseWhatIsNotACloud) {
   for (const char* name : {"points.obj", "points.off.gz", "points.gz", "points"})
     expect_not_streamed(name, "0 0 0\n", ".ply, .pcd, .las, .xyz, .txt, .asc, .csv or .pts");
   const std::string head = "ply\nformat binary_little_endian 1.0\n",
@@ -68,6 +68,8 @@ TEST_F(PointStreams, RefuseOtherFormats) {
   const std::string end = "end_header\n" + std::string(13, '\0');
   expect_not_streamed("lists.ply", head + vertex + "property list uchar int more\n" + end, "lists");
   expect_not_streamed("strip.ply", head + "element strip 1\nproperty list uchar int of\n" + vertex + end, "'strip'");
+  expect_not_streamed("missing.ply", head + "element vertex 1\nproperty uchar x\nproperty uchar y\n" + end, "'z'");
+  expect_not_streamed("point.ply", head + "element point 1\nproperty uchar x\n" + end, "no element 'vertex'");
   expect_not_streamed("faces.ply", head + vertex + "element face 1\nproperty list uchar int vertex_indices\n" + end,
                       "faces");
 }

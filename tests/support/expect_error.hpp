@@ -1,5 +1,5 @@
 /// \file
-/// Errors of a type that say what they must.
+/// Checks the type and the message of an exception.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -8,12 +8,12 @@
 
 namespace ahm::test {
 
-/// The call throws an Exception whose text holds `text`.
+/// Expects that the call throws an Exception whose message contains `text`.
 template <class Exception, class Call>
 void expect_error(const Call& call, const std::string& text) {
   try {
     call();
-    ADD_FAILURE() << "no error; expected one that says: " << text;
+    ADD_FAILURE() << "no error; expected: " << text;
   } catch (const Exception& e) {
     EXPECT_NE(std::string(e.what()).find(text), std::string::npos) << e.what();
   }

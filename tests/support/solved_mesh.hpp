@@ -1,5 +1,5 @@
 /// \file
-/// A triangle mesh taken all the way to maps, and its maps beside the plane it was made from.
+/// Maps of a triangle mesh, and their errors if the mesh is a plane.
 #pragma once
 
 #include "ahm/conformance/triangle_meshes.hpp"
@@ -8,7 +8,7 @@
 
 namespace ahm::test {
 
-/// Builds, factors and solves in one go.
+/// A surface with its solver.
 struct SolvedMesh {
   explicit SolvedMesh(const Mesh& mesh, const trimesh::MeshOptions& options = {})
       : surface(trimesh::TriangleMeshSurface::build(mesh.positions, mesh.faces, options)), solver(surface.graph()) {}
@@ -21,8 +21,8 @@ struct SolvedMesh {
   LogMapSolver solver;
 };
 
-/// Largest distance between the map and the plane seen from `origin` with unit axis `axis`; infinite unless all is
-/// mapped.
+/// Largest distance between the map and the coordinates in the plane, with origin `origin` and unit axis `axis`. Infinite if a vertex
+/// is not mapped.
 inline double plane_error(const Mesh& mesh, const RowLogMap& map, const Vec2& origin, const Vec2& axis) {
   return plane_error(mesh.plane, map.u, map.v, origin, axis);
 }

@@ -23,6 +23,7 @@ Cases off_cases() {
   c.good("both.off", "CNOFF\n1 0 0\n1 2 3 0 0 1 9 8 7\n", "1 2 3; normals 0 0 1; colors 9 8 7");
   for (const char* color : {"", " 4", " 300 0 0"})
     c.good("unknown.off", std::string("COFF\n1 0 0\n1 2 3") + color + "\n", "1 2 3; colors_unknown");
+  c.good("unknown.off", "COFF\n2 0 0\n1 2 3\n1 2 3 4 5 6\n", "1 2 3, 1 2 3; colors_unknown");
   c.bad("color.off", "COFF\n1 0 0\n1 2 3 0,5 0 0\n", {"line 3", "0,5"});
 
   for (const std::string count : {"4294967295", "9223372036854775807", "99999999999999999999", "-1"}) {

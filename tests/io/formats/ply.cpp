@@ -125,6 +125,9 @@ void add_bad_headers(Cases& c) {
   c.bad("none.ply", head + "end_header\n1 2\n", {"'x'"});
   c.bad("no_vertex.ply", "ply\nformat ascii 1.0\nend_header\n", {"no element 'vertex'"});
   c.bad("point.ply", "ply\nformat ascii 1.0\nelement point 1\n" + xyz + "end_header\n1 2 3\n", {"no element 'vertex'"});
+  c.bad("level.ply",
+        text_header("1", "property uchar red\nproperty uchar green\nproperty uchar blue\n") + "1 2 3 256 4 5\n",
+        {"256"});
   c.bad("plx.ply", "plx\n", {"line 1"});
   c.bad("format.ply", "ply\nelement vertex 0\n" + xyz + "end_header\n", {"format"});
   c.bad("property.ply", "ply\nformat ascii 1.0\nproperty float x\nend_header\n", {"line 3"});
