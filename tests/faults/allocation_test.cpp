@@ -1,12 +1,8 @@
-// Every allocation fails in turn: what was asked for ends in a typed error or std::bad_alloc, and leaves solvers, files and
-// memory as they were.
+// Every allocation fails in turn: the work ends with a typed error or std::bad_alloc, and leaves solvers, files and memory as they were.
 #include <gtest/gtest.h>
 
-#include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <functional>
-#include <iterator>
+#include <stdexcept>
 
 #include "ahm/conformance/clouds.hpp"
 #include "ahm/conformance/polygon_meshes.hpp"
@@ -29,22 +25,26 @@ namespace {
 
 using Work = std::function<void()>;
 
-/// Whether the work was done with allocation k failing; false where it ended in an error. Everything else ends the test.
-bool survives(const Work& work, long k, bool ever_after, bool& happened) {
+/// Outcome of work during which allocations fail.
+struct Outcome {
+  bool is_done, has_failed;  ///< whether the work ended without an error; whether an allocation failed
+};
+
+/// Runs the work while allocation k fails, alone or with all later ones. Only errors for lack of memory are allowed.
+Outcome run_failing(const Work& work, long k, bool ever_after) {
   const FailingAllocation failing(k, ever_after);
-  bool done = false;
+  bool is_done = false;
   try {
     work();
-    done = true;
+    is_done = true;
   } catch (const Error&) {
   } catch (const std::bad_alloc&) {
   } catch (const std::length_error&) {
   }
-  happened = failing.happened();
-  return done;
+  return {is_done, failing.happened()};
 }
 
-/// Whether memory that lives grows each time, and not once for what is kept.
+/// Whether memory in use grows at each of three runs. Once is allowed: for what is kept.
 bool loses_memory(const Work& work) {
   for (int times = 0; times < 3; ++times) {
     const long before = live_blocks();
@@ -54,24 +54,29 @@ bool loses_memory(const Work& work) {
   return true;
 }
 
-/// Work with allocation 1, 2, ... failing, until there are no more of them.
-/// @param intact  called after each run
+/// Runs the work while allocation 1, 2, ... fails, until there are no more.
+/// @param check  called after each run
 void fail_in_turn(
-    const Work& work, const Work& intact = [] {}) {
-  for (int warm = 0; warm < 2; ++warm) work();  // what is made once: tables, names of the BLAS
+    const Work& work, const Work& check = [] {}) {
+  for (int warm = 0; warm < 2; ++warm) work();  // allocates what is kept: tables, names of the BLAS
   for (const bool ever_after : {false, true}) {
     long failures = 0, errors = 0;
-    bool happened = true;
-    for (long k = 1; happened; ++k) {
-      errors += survives(work, k, ever_after, happened) ? 0 : 1;
-      failures += happened ? 1 : 0;
-      ASSERT_FALSE(loses_memory([&] { survives(work, k, ever_after, happened); }))
-          << "where allocation " << k << " fails";
-      intact();
+    for (long k = 1;; ++k) {
+      const Outcome outcome = run_failing(work, k, ever_after);
+      errors += !outcome.is_done;
+      failures += outcome.has_failed;
+      ASSERT_FALSE(loses_memory([&] { run_failing(work, k, ever_after); })) << "where allocation " << k << " fails";
+      check();
+      if (!outcome.has_failed) break;
     }
     EXPECT_GT(failures, 10);
-    EXPECT_GT(errors, 10);  // not all: sorting takes less memory where it gets no more
+    EXPECT_GT(errors, 10);  // not all failures: sorting works with less memory, too
   }
+}
+
+trimesh::TriangleMeshSurface square_surface() {
+  const Mesh mesh = flat_square(5);
+  return trimesh::TriangleMeshSurface::build(mesh.positions, mesh.faces, {.threads = 1});
 }
 
 TEST(AllocationsFail, WhileAMeshIsBuiltFactoredSolvedAndWritten) {
@@ -98,10 +103,9 @@ TEST(AllocationsFail, WhileAMeshIsBuiltFactoredSolvedAndWritten) {
   });
 }
 
-/// A solver serves as before after each failure.
+/// After each failure, the solver returns the same maps.
 void solve_in_turn(const HeatOptions& options, std::vector<Index> rows = {0, 3, 7, 12, 20, 24}) {
-  const Mesh mesh = flat_square(5);
-  const auto surface = trimesh::TriangleMeshSurface::build(mesh.positions, mesh.faces, {.threads = 1});
+  const auto surface = square_surface();
   const LogMapSolver solver(surface.graph(), options);
   std::vector<Source> sources;
   for (const Index row : rows) sources.push_back(surface.source(Row(row)).source);
@@ -120,8 +124,7 @@ TEST(AllocationsFail, WhileASolverMarches) { solve_in_turn({.strategy = Strategy
 TEST(AllocationsFail, OnManyThreads) { solve_in_turn({.threads = 4}); }
 
 TEST(AllocationsFail, WhileOperatorsAreFactoredInAnyOrder) {
-  const Mesh mesh = flat_square(5);
-  const auto surface = trimesh::TriangleMeshSurface::build(mesh.positions, mesh.faces, {.threads = 1});
+  const auto surface = square_surface();
   for (const Ordering ordering : {Ordering::amd, Ordering::nested_dissection})
     fail_in_turn([&] { (void)LogMapSolver(surface.graph(), {.ordering = ordering, .threads = 1}); });
 }
@@ -147,8 +150,7 @@ TEST(AllocationsFail, WhilePolygonsAreBuilt) {
 
 TEST(AllocationsFail, WhileLocalMapsAreMadeAndWritten) {
   const Folder folder;
-  const Mesh mesh = flat_square(5);
-  const auto surface = trimesh::TriangleMeshSurface::build(mesh.positions, mesh.faces, {.threads = 1});
+  const auto surface = square_surface();
   LocalMapOptions options{.radius = 0.5};
   options.heat.threads = 1;
   fail_in_turn(
@@ -166,8 +168,7 @@ TEST(AllocationsFail, WhileLocalMapsAreMadeAndWritten) {
 }
 
 TEST(AllocationsFail, WhileWindowsAreTraced) {
-  const Mesh mesh = flat_square(5);
-  const auto surface = trimesh::TriangleMeshSurface::build(mesh.positions, mesh.faces, {.threads = 1});
+  const auto surface = square_surface();
   fail_in_turn([&] {
     const ExactGeodesics exact(surface);
     (void)exact.log_map(Row(12));
@@ -179,24 +180,22 @@ TEST(AllocationsFail, WhileWindowsAreTraced) {
 TEST(AllocationsFail, WhileFilesAreRead) {
   const Folder folder;
   const Mesh mesh = flat_square(3);
+  io::Table table{"points"};
+  table.add({"x", "y", "z"}, mesh.positions);
+  io::write(folder.path("a.ply"), table);
   std::string obj, off = "OFF\n9 8 0\n", stl = "solid s\n", xyz;
   for (const Vec3& p : mesh.positions) {
     const std::string words = std::to_string(p[0]) + " " + std::to_string(p[1]) + " " + std::to_string(p[2]) + "\n";
     obj += "v " + words, off += words, xyz += words;
   }
-  for (const Triangle& face : mesh.faces) {
-    obj += "f", off += "3", stl += "facet normal 0 0 1\nouter loop\n";
-    for (const Index corner : face) {
-      obj += " " + std::to_string(corner + 1), off += " " + std::to_string(corner);
-      stl += "vertex " + std::to_string(corner) + " 0 1\n";
-    }
-    obj += "\n", off += "\n", stl += "endloop\nendfacet\n";
+  for (const auto& [i, j, k] : mesh.faces) {
+    const auto text = [](Index vertex) { return " " + std::to_string(vertex); };
+    obj += "f" + text(i + 1) + text(j + 1) + text(k + 1) + "\n", off += "3" + text(i) + text(j) + text(k) + "\n";
+    stl += "facet normal 0 0 1\nouter loop\nvertex 0 0" + text(i) + "\nvertex 0 1" + text(j) + "\nvertex 1 1" +
+           text(k) + "\nendloop\nendfacet\n";
   }
-  stl += "endsolid s\n";
-  io::Table table{"points"};
-  table.add({"x", "y", "z"}, mesh.positions);
-  io::write(folder.path("a.ply"), table);
-  folder.write("a.obj", obj), folder.write("a.off", off), folder.write("a.stl", stl), folder.write("a.xyz", xyz);
+  folder.write("a.obj", obj), folder.write("a.off", off), folder.write("a.stl", stl + "endsolid s\n"),
+      folder.write("a.xyz", xyz);
   for (const char* name : {"a.ply", "a.obj", "a.off", "a.stl", "a.xyz"})
     fail_in_turn([&] { (void)io::read(folder.path(name)); });
 }

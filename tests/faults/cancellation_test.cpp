@@ -1,23 +1,22 @@
-// Cancelled at any step of its progress, work ends with Cancelled, and what it stood on serves as before.
+// StoppableWork that is cancelled at any step of its progress ends with Cancelled, and its inputs stay usable.
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <functional>
 #include <random>
 #include <stop_token>
 
-#include "ahm/conformance/clouds.hpp"
 #include "ahm/conformance/triangle_meshes.hpp"
 #include "ahm/error.hpp"
 #include "ahm/maps/local_maps.hpp"
 #include "ahm/maps/log_map_solver.hpp"
-#include "ahm/pointcloud/point_cloud_surface.hpp"
 #include "ahm/surface/exact/exact_geodesics.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
 
 namespace ahm::test {
 namespace {
 
-/// Asks to stop at step number k of its progress.
+/// Requests a stop at step k of the progress.
 class StopAt {
  public:
   explicit StopAt(int k) : left_(k) {}
@@ -27,30 +26,36 @@ class StopAt {
             },
             source_.get_token()};
   }
-  bool came() const { return left_ < 1; }
+  bool is_reached() const { return left_ < 1; }
 
  private:
   std::atomic<int> left_;
   std::stop_source source_;
 };
 
-/// Work cancelled at step 1, 2, ..., as long as there are steps; returns their number.
-template <class Work>
-int cancel_in_turn(const Work& work) {
-  for (int k = 1;; ++k) {
-    StopAt stop(k);
-    bool cancelled = false;
-    try {
-      work(stop.progress());
-    } catch (const Cancelled&) {
-      cancelled = true;
-    }
-    EXPECT_EQ(cancelled, stop.came()) << "at step " << k;
-    if (!stop.came()) return k - 1;
+using StoppableWork = std::function<void(const Progress&)>;
+
+/// Runs the work, which must end with Cancelled if it reaches step k. @return whether it does
+bool is_cancelled(int k, const StoppableWork& work) {
+  StopAt stop(k);
+  bool cancelled = false;
+  try {
+    work(stop.progress());
+  } catch (const Cancelled&) {
+    cancelled = true;
   }
+  EXPECT_EQ(cancelled, stop.is_reached()) << "at step " << k;
+  return stop.is_reached();
 }
 
-TEST(Cancellation, AtAnyStepLeavesWhatItStoodOnAsItWas) {
+/// Cancels the work at step 1, 2, ...; returns the number of steps.
+int cancel_in_turn(const StoppableWork& work) {
+  int steps = 0;
+  while (is_cancelled(steps + 1, work)) ++steps;
+  return steps;
+}
+
+TEST(Cancellation, AtAnyStepLeavesInputsUsable) {
   const Mesh mesh = torus(600);
   const auto surface = trimesh::TriangleMeshSurface::build(mesh.positions, mesh.faces);
   const LogMapSolver solver(surface.graph()), marching(surface.graph(), {.strategy = Strategy::march});
@@ -89,27 +94,21 @@ TEST(Cancellation, AThousandTimesAtRandomSteps) {
   const auto surface = trimesh::TriangleMeshSurface::build(mesh.positions, mesh.faces);
   const ExactGeodesics exact(surface);
   const LogMapSolver marching(surface.graph(), {.strategy = Strategy::march, .threads = 2});
-  const LogMap expected = marching.solve(Source::at_vertex(Vertex(0)));
-  const LogMap expected_exact = exact.log_map(Vertex(0));
+  const auto march = [&](const Progress& progress) {
+    return marching.solve(Source::at_vertex(Vertex(0)), {.progress = progress});
+  };
+  const auto trace = [&](const Progress& progress) { return exact.log_map(Vertex(0), {.progress = progress}); };
+  const LogMap marched = march({}), traced = trace({});
   std::mt19937 generator(5);
   int cancelled = 0;
   for (int run = 0; run < 1000; ++run) {
-    StopAt stop(static_cast<int>(1 + generator() % 12));
-    try {
-      if (run % 2 == 0)
-        (void)marching.solve(Source::at_vertex(Vertex(0)), {.progress = stop.progress()});
-      else
-        (void)exact.log_map(Vertex(0), {.progress = stop.progress()});
-      EXPECT_FALSE(stop.came()) << run;
-    } catch (const Cancelled&) {
-      EXPECT_TRUE(stop.came()) << run;
-      ++cancelled;
-    }
+    const StoppableWork work = run % 2 == 0 ? StoppableWork([&](const Progress& progress) { (void)march(progress); })
+                                            : StoppableWork([&](const Progress& progress) { (void)trace(progress); });
+    cancelled += is_cancelled(static_cast<int>(1 + generator() % 12), work);
   }
   EXPECT_GT(cancelled, 300);
-  const LogMap map = marching.solve(Source::at_vertex(Vertex(0)));
-  EXPECT_TRUE(std::ranges::equal(map.coordinates(), expected.coordinates()));
-  EXPECT_TRUE(std::ranges::equal(exact.log_map(Vertex(0)).coordinates(), expected_exact.coordinates()));
+  EXPECT_TRUE(std::ranges::equal(march({}).coordinates(), marched.coordinates()));
+  EXPECT_TRUE(std::ranges::equal(trace({}).coordinates(), traced.coordinates()));
 }
 
 }  // namespace

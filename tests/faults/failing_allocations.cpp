@@ -4,56 +4,49 @@
 #include <malloc.h>
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <cerrno>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <span>
 
 namespace {
 
 constexpr long never = std::numeric_limits<long>::max();
 std::atomic<long> until_failure{never};
-std::atomic<bool> goes_on{false};
+std::atomic<bool> fails_ever_after{false};
 std::atomic<long> live{0}, made{0}, live_bytes{0}, peak_bytes{0};
 
-/// minizip writes to what it did not get: whoever calls it tries beforehand whether there is memory.
-constexpr std::array fatal_libraries{"/libminizip"};
-
-struct Range {
+/// The addresses of minizip's code. minizip writes to memory that it did not get, so its allocations never fail. Its callers check
+/// beforehand that there is memory.
+struct Minizip {
   std::uintptr_t begin = 0, end = 0;
+
+  Minizip() {
+    const auto visit = [](dl_phdr_info* library, std::size_t, void* self) {
+      if (std::strstr(library->dlpi_name, "/libminizip") == nullptr) return 0;
+      auto& range = *static_cast<Minizip*>(self);
+      range.begin = library->dlpi_addr;
+      for (const auto& part : std::span(library->dlpi_phdr, library->dlpi_phnum))
+        range.end = std::max<std::uintptr_t>(range.end, range.begin + part.p_vaddr + part.p_memsz);
+      return 1;
+    };
+    ::dl_iterate_phdr(visit, this);
+  }
 };
 
-std::array<Range, fatal_libraries.size()> ranges() {
-  std::array<Range, fatal_libraries.size()> found;
-  const auto visit = [](dl_phdr_info* library, std::size_t, void* to) {
-    for (std::size_t k = 0; k < fatal_libraries.size(); ++k) {
-      if (std::strstr(library->dlpi_name, fatal_libraries[k]) == nullptr) continue;
-      Range& range = static_cast<Range*>(to)[k];
-      range.begin = library->dlpi_addr;
-      for (int s = 0; s < library->dlpi_phnum; ++s)
-        range.end = std::max<std::uintptr_t>(
-            range.end, range.begin + library->dlpi_phdr[s].p_vaddr + library->dlpi_phdr[s].p_memsz);
-    }
-    return 0;
-  };
-  ::dl_iterate_phdr(visit, found.data());
-  return found;
-}
-
-bool is_fatal(const void* caller) {
-  static const auto known = ranges();
+bool is_minizip(const void* caller) {
+  static const Minizip code;
   const auto address = reinterpret_cast<std::uintptr_t>(caller);
-  return std::any_of(known.begin(), known.end(),
-                     [&](const Range& range) { return range.begin <= address && address < range.end; });
+  return code.begin <= address && address < code.end;
 }
 
 bool fails(const void* caller) {
-  if (until_failure.load(std::memory_order_relaxed) == never || is_fatal(caller)) return false;
+  if (until_failure.load(std::memory_order_relaxed) == never || is_minizip(caller)) return false;
   const long left = until_failure.fetch_sub(1);
-  return left == 1 || (left < 1 && goes_on.load());
+  return left == 1 || (left < 1 && fails_ever_after.load());
 }
 
 void add_bytes(long bytes) {
@@ -77,7 +70,7 @@ void* counted(void* block) {
 
 }  // namespace
 
-// What glibc's own allocator is called besides.
+// Other names of glibc's allocator.
 extern "C" {
 void* __libc_malloc(std::size_t);                 // NOLINT
 void* __libc_calloc(std::size_t, std::size_t);    // NOLINT
@@ -128,7 +121,7 @@ void free(void* block) {
 namespace ahm::test {
 
 FailingAllocation::FailingAllocation(long k, bool ever_after) {
-  goes_on = ever_after;
+  fails_ever_after = ever_after;
   until_failure = k;
 }
 FailingAllocation::~FailingAllocation() { until_failure = never; }

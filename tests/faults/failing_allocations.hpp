@@ -1,11 +1,11 @@
 /// \file
-/// An allocator of the whole process that counts what lives and fails when it is told to: `malloc` and its kin, and so
-/// `operator new` and what every library allocates.
+/// Replaces `malloc` and its relatives for the whole process, including `operator new` and all libraries. Counts allocations and makes
+/// them fail.
 #pragma once
 
 namespace ahm::test {
 
-/// While it lives, allocation number k from 1 fails, of any thread; with `ever_after` all later ones too.
+/// While it exists, allocation k = 1, 2, ... of all threads fails; with `ever_after`, all later ones fail, too.
 class FailingAllocation {
  public:
   explicit FailingAllocation(long k, bool ever_after = false);
@@ -13,7 +13,7 @@ class FailingAllocation {
   FailingAllocation(const FailingAllocation&) = delete;
   FailingAllocation& operator=(const FailingAllocation&) = delete;
 
-  /// Whether it came to that.
+  /// Whether an allocation failed.
   bool happened() const;
 };
 
@@ -22,7 +22,7 @@ long live_blocks();
 /// Blocks allocated so far, freed or not.
 long allocations();
 
-/// The most bytes that live at a time while it does, less those before.
+/// The largest number of bytes in use at a time while it exists, minus those in use before.
 class PeakBytes {
  public:
   PeakBytes();

@@ -1,5 +1,5 @@
 /// \file
-/// A directory of its own for one test, with files as bytes.
+/// A folder for one test that writes and reads files as bytes.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// What maps allocate: bytes at most, and how often.
+// Limits of the memory of maps: bytes, and number of allocations.
 #include <gtest/gtest.h>
 
 #include "ahm/conformance/triangle_meshes.hpp"
@@ -15,7 +15,7 @@ auto sphere(Index n) {
   return trimesh::TriangleMeshSurface::build(mesh.positions, mesh.faces);
 }
 
-/// Bytes that the layout and a map take beyond the surface.
+/// Bytes of the layout and a map, without the surface.
 long exact_bytes(const Surface& surface, double tolerance) {
   const PeakBytes peak;
   const ExactGeodesics geodesics(surface);
@@ -30,7 +30,7 @@ long heat_bytes(const Surface& surface) {
   return peak();
 }
 
-/// A graph of a few hubs to which all other vertices are joined, alone.
+/// A graph of a few hubs. All other vertices are neighbors of the hubs only.
 CsrGraph hubs(Index n, Index count) {
   CsrGraphData g;
   g.masses.assign(static_cast<std::size_t>(n), 1.0);
@@ -47,14 +47,14 @@ CsrGraph hubs(Index n, Index count) {
   return CsrGraph(std::move(g));
 }
 
-TEST(Factors, TakeMemoryInProportionToThemselvesWhereThousandsOfVerticesAreJoinedToTheSameFew) {
+TEST(Factors, NeedMemoryInProportionToTheirSizeOnHubs) {
   const CsrGraph graph = hubs(5000, 60);
   const PeakBytes peak;
   const HeatOperators operators(graph, {.threads = 1});
   EXPECT_LT(peak(), 8 * static_cast<long>(operators.statistics().bytes));
 }
 
-TEST(ExactMaps, TakeLessThanAFifthOfTheMemoryOfHeat) {
+TEST(ExactMaps, NeedLessThanAFifthOfTheMemoryOfHeat) {
   const auto surface = sphere(40000);
   const long heat = heat_bytes(surface);
   for (double tolerance : {0.0, 1e-3}) {
@@ -64,7 +64,7 @@ TEST(ExactMaps, TakeLessThanAFifthOfTheMemoryOfHeat) {
   }
 }
 
-/// Windows lie in chunks that are used again, so allocations follow those that wait at a time.
+/// Chunks of windows are reused, so the number of allocations depends on the windows that wait at a time.
 TEST(ExactMaps, AllocateNothingPerWindow) {
   struct Count {
     Offset windows;

@@ -1,5 +1,4 @@
-// Everything that is parallel, at a size fit for the thread sanitizer: the same bits on any number of threads, and from many
-// threads at once.
+// All parallel code, on sizes for the thread sanitizer: the same bits on any number of threads, and from many threads at once.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -24,16 +23,15 @@ namespace {
 
 using Numbers = std::vector<double>;
 
+void append(Numbers& all, std::span<const double> more) { all.insert(all.end(), more.begin(), more.end()); }
+
 Numbers numbers_of(const std::vector<LogMap>& maps) {
   Numbers all;
-  for (const LogMap& map : maps) {
-    all.insert(all.end(), map.coordinates().begin(), map.coordinates().end());
-    all.insert(all.end(), map.distances().begin(), map.distances().end());
-  }
+  for (const LogMap& map : maps) append(all, map.coordinates()), append(all, map.distances());
   return all;
 }
 
-/// Bit for bit: NaN where there is no map is the same.
+/// Compares bit by bit, so that NaN equals NaN.
 bool same(std::span<const double> a, std::span<const double> b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
 }
@@ -48,13 +46,13 @@ std::vector<Source> some_sources(const TangentGraph& graph, Index step) {
   return sources;
 }
 
-/// Eight threads ask one solver for maps, alone and in blocks, again and again.
-void ask_from_eight_threads(const HeatOptions& options) {
+/// Eight threads compute maps with one solver, one by one and in blocks, several times.
+void solve_on_eight_threads(const HeatOptions& options) {
   const auto surface = surface_of(holed_square(20), 1);
   const LogMapSolver solver(surface.graph(), options);
   const std::vector<Source> sources = some_sources(surface.graph(), 50);
   const Numbers expected = numbers_of(solver.solve(sources));
-  std::vector<Numbers> expected_alone;  // other sums than those of a block
+  std::vector<Numbers> expected_alone;  // rounding differs from that of a block
   for (const Source& source : sources) expected_alone.push_back(numbers_of({solver.solve(source)}));
   std::atomic<int> blocks{0}, singles{0};
   {
@@ -73,13 +71,13 @@ void ask_from_eight_threads(const HeatOptions& options) {
   EXPECT_EQ(singles, 0);
 }
 
-TEST(Threads, EightOnOneSolverGetWhatOneGets) {
-  ask_from_eight_threads({});
-  ask_from_eight_threads({.variant = Variant::localized});
-  ask_from_eight_threads({.strategy = Strategy::march});
+TEST(Threads, EightWithOneSolverComputeTheMapsOfOne) {
+  solve_on_eight_threads({});
+  solve_on_eight_threads({.variant = Variant::localized});
+  solve_on_eight_threads({.strategy = Strategy::march});
 }
 
-TEST(Threads, EightFactorAtOnceWhatOneFactors) {
+TEST(Threads, EightFactorizationsAtOnceAreThatOfOne) {
   const auto surface = surface_of(holed_square(20), 1);
   const std::vector<Source> sources = some_sources(surface.graph(), 100);
   const Numbers expected = numbers_of(LogMapSolver(surface.graph(), {.threads = 1}).solve(sources));
@@ -100,11 +98,11 @@ TEST(Threads, BuildTheSameSurfaces) {
     Numbers all = of_mesh.graph().data().weights;
     const Cloud cloud = flat_cloud(2000);
     const auto of_cloud = pointcloud::PointCloudSurface::build(cloud.points, {}, {.threads = threads});
-    all.insert(all.end(), of_cloud.graph().data().weights.begin(), of_cloud.graph().data().weights.end());
+    append(all, of_cloud.graph().data().weights);
     const Polygons polygons = voronoi_square(300);
     const auto of_polygons =
         polymesh::PolygonMeshSurface::build(polygons.positions, polygons.begin, polygons.corners, {.threads = threads});
-    all.insert(all.end(), of_polygons.graph().data().weights.begin(), of_polygons.graph().data().weights.end());
+    append(all, of_polygons.graph().data().weights);
     return all;
   };
   const Numbers expected = weights(1);
@@ -119,7 +117,7 @@ TEST(Threads, MakeTheSameLocalMapsAndPaths) {
     options.heat.threads = threads;
     const LocalMaps maps = local_maps(surface.graph(), options);
     Numbers all = maps.logs;
-    all.insert(all.end(), maps.distances.begin(), maps.distances.end());
+    append(all, maps.distances);
     const ExactGeodesics exact(surface);
     std::vector<std::array<SurfacePoint, 2>> pairs;
     for (Index i = 0; i + 40 < static_cast<Index>(surface.positions().size()); i += 20)
@@ -132,25 +130,25 @@ TEST(Threads, MakeTheSameLocalMapsAndPaths) {
   EXPECT_EQ(numbers(8), expected);
 }
 
-/// Loops over vertices are shared out in chunks of up to 32,768.
-TEST(Threads, ShareOutWhatHasMoreVerticesThanOneChunk) {
+/// Loops over vertices have chunks of up to 32,768.
+TEST(Threads, ShareMoreVerticesThanOneChunk) {
   const auto numbers = [](unsigned threads) {
     const auto surface = surface_of(torus(40'000), threads);
     validate(surface.graph(), threads);
     Numbers all = surface.graph().data().weights;
     const LogMapSolver solver(surface.graph(), {.strategy = Strategy::march, .threads = threads});
     const LogMap map = solver.solve(Source::at_vertex(Vertex{7}));
-    for (const double x : numbers_of({map})) all.push_back(x);
-    for (const double x : map_quality(surface.graph(), map, threads)) all.push_back(x);
+    append(all, numbers_of({map}));
+    append(all, map_quality(surface.graph(), map, threads));
     const auto of_cloud = pointcloud::PointCloudSurface::build(flat_cloud(12'000).points, {}, {.threads = threads});
-    all.insert(all.end(), of_cloud.graph().data().weights.begin(), of_cloud.graph().data().weights.end());
+    append(all, of_cloud.graph().data().weights);
     return all;
   };
   EXPECT_TRUE(same(numbers(3), numbers(1)));
 }
 
-/// As charts of atlases are.
-TEST(Threads, SolveOnPatchesOfTheirOwn) {
+/// The charts of an atlas are computed like this.
+TEST(Threads, SolveOnDifferentPatches) {
   const auto surface = surface_of(holed_square(20), 1);
   const std::vector<Source> sources = some_sources(surface.graph(), 40);
   std::vector<Vertex> everything;

@@ -1,5 +1,5 @@
 /// \file
-/// Files that tests make: a directory of their own, and helpers to build and refuse contents.
+/// A folder of files for one test, and helpers that write and read them.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -20,7 +20,6 @@
 
 namespace ahm::io::test {
 
-/// A directory that lives as long as the test.
 class Files : public ::testing::Test {
  protected:
   std::filesystem::path path(const std::string& name) const { return directory_ / name; }
@@ -32,7 +31,7 @@ class Files : public ::testing::Test {
 
   Geometry read_bytes(const std::string& name, std::string_view bytes) const { return read(make(name, bytes)); }
 
-  /// Expects that these bytes are refused with a message that names the file and holds all `parts`.
+  /// Expects an error whose message names the file and contains all `parts`.
   void expect_refused(const std::string& name, std::string_view bytes, const std::vector<std::string>& parts) const {
     expect_refused(make(name, bytes), parts);
   }
@@ -40,7 +39,7 @@ class Files : public ::testing::Test {
   static void expect_refused(const std::filesystem::path& path, const std::vector<std::string>& parts) {
     try {
       read(path);
-      ADD_FAILURE() << path << " was read";
+      ADD_FAILURE() << path << " was read; expected: " << ::testing::PrintToString(parts);
     } catch (const IoError& error) {
       const std::string message = error.what();
       EXPECT_NE(message.find(path.string()), std::string::npos) << message;

@@ -11,7 +11,7 @@
 namespace ahm::io::test {
 namespace {
 
-using Npz = Files;
+class Npz : public Files {};
 
 /// The bytes of one file of the archive; unzip checks their CRC.
 std::string unzipped(const std::string& archive, const std::string& name) {
@@ -71,7 +71,7 @@ TEST_F(Npz, AppearsOnCommitOrNotAtAll) {
   EXPECT_FALSE(std::filesystem::exists(path + ".part"));
 }
 
-TEST_F(Npz, RefusesWhatCannotBe) {
+TEST_F(Npz, RefusesOtherPlacesAndShapes) {
   EXPECT_THROW(NpzFile("/nonexistent/a.npz"), IoError);
   EXPECT_THROW(NpzFile("/dev/null"), IoError);
   NpzFile file(this->path("a.npz"));

@@ -1,5 +1,5 @@
 /// \file
-/// That points read block by block are those that `read` finds in the whole file, and what is wrong is told in the same words.
+/// Compares `PointStream` with `read`: the same points, or the same message.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -15,42 +15,35 @@
 
 namespace ahm::io::test {
 
-struct Found {
+/// Result of reading one file: points, or a message.
+struct Cloud {
   std::vector<Vec3> points;
   bool has_normals = false;
   std::string error;
 };
 
-inline Found find_whole(const std::filesystem::path& path) {
-  Found found;
-  try {
-    Geometry g = read(path);
-    found.has_normals = !g.normals.empty();
-    found.points = std::move(g.points);
-  } catch (const IoError& e) {
-    found.error = e.what();
-  }
-  return found;
+inline Cloud find_whole(const std::filesystem::path& path) try {
+  Geometry g = read(path);
+  return {std::move(g.points), !g.normals.empty(), ""};
+} catch (const IoError& e) {
+  return {.error = e.what()};
 }
 
-inline Found find_streamed(const std::filesystem::path& path, std::size_t block = 1000) {
-  Found found;
-  try {
-    PointStream stream(path, path.parent_path());
-    found.has_normals = stream.has_normals();
-    std::vector<Vec3> points(block);
-    while (const std::size_t count = stream.read(points))
-      found.points.insert(found.points.end(), points.begin(), points.begin() + static_cast<std::ptrdiff_t>(count));
-    EXPECT_EQ(stream.size(), found.points.size());
-  } catch (const IoError& e) {
-    found.error = e.what();
-  }
-  return found;
+inline Cloud find_streamed(const std::filesystem::path& path, std::size_t block = 1000) try {
+  PointStream stream(path, path.parent_path());
+  Cloud cloud{.has_normals = stream.has_normals()};
+  std::vector<Vec3> points(block);
+  while (const std::size_t count = stream.read(points))
+    cloud.points.insert(cloud.points.end(), points.begin(), points.begin() + static_cast<std::ptrdiff_t>(count));
+  EXPECT_EQ(stream.size(), cloud.points.size());
+  return cloud;
+} catch (const IoError& e) {
+  return {.error = e.what()};
 }
 
 /// @return whether the file was read
 inline bool expect_streamed_as_read(const std::filesystem::path& path) {
-  const Found whole = find_whole(path), streamed = find_streamed(path);
+  const Cloud whole = find_whole(path), streamed = find_streamed(path);
   EXPECT_EQ(streamed.error, whole.error);
   EXPECT_EQ(streamed.points.size(), whole.points.size()) << path;
   if (streamed.points.size() != whole.points.size()) return false;

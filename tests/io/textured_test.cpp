@@ -9,9 +9,9 @@
 namespace ahm::io::test {
 namespace {
 
-using Textured = Files;
+class Textured : public Files {};
 
-/// A quadrilateral and a triangle that share an edge, with a seam along it.
+/// A quadrilateral and a triangle with a common edge, which is a seam.
 struct Shape {
   std::vector<Vec3> points{{0, 0, 0}, {1, 0, 0}, {9, 9, 9}, {1, 1, 0.25}, {0, 1, 0}, {2, 0.1, 1e-9}};  // 2: unused
   std::vector<Vec3> normals = std::vector<Vec3>(6, Vec3{0, 0, 1});
@@ -61,7 +61,7 @@ TEST(ImageSample, IsTheMiddleOfAPixelAndLinearBetween) {
         EXPECT_NEAR(image.sample((x + 0.5) / 4, 1 - (y + 0.5) / 2)[c], image.pixel(x, y)[c] / 255.0, 1e-12);
   EXPECT_NEAR(image.sample(0.4, 0.6)[0] * 255, 40 * (0.4 * 4 - 0.5) + 10 * (0.4 * 2 - 0.5), 1e-12);
   EXPECT_EQ(image.sample(-3, 5), image.sample(0, 1));
-  // What is transparent does not lend its color.
+  // Transparent pixels do not contribute their color.
   image.pixel(1, 0)[3] = 0;
   EXPECT_NEAR(image.sample(0.25, 0.75)[0] * 255, 0, 1e-12);
   EXPECT_NEAR(image.sample(0.25, 0.75)[3], 0.5, 1e-12);
@@ -86,7 +86,7 @@ TEST_F(Textured, ObjReadsBackWithItsMaterialsAndTexture) {
   const Geometry back = read(path("out.obj"));
   ASSERT_EQ(back.points.size(), 10U);
   ASSERT_EQ(back.face_count(), 4U);
-  // Texture coordinates, by the numbers of the second part's corners.
+  // Texture coordinates of the corners of the second part.
   std::vector<std::array<double, 2>> vt;
   std::vector<double> uv;
   std::vector<Index> corners;
@@ -196,7 +196,7 @@ TEST_F(Textured, PlyHasAVertexForEveryPairOfCoordinatesOfAPoint) {
   const std::string bytes = contents(path("a.ply"));
   for (const char* line : {"property double s\nproperty double t\nproperty int point\n", "element vertex 12\n"})
     EXPECT_NE(bytes.find(line), std::string::npos) << line;
-  // x y z nx ny nz s t point: what stands at each corner is what was given.
+  // x y z nx ny nz s t point: the values of each corner.
   const std::size_t stride = 8 * sizeof(double) + sizeof(std::int32_t), body = bytes.find("end_header\n") + 11;
   for (std::size_t c = 0; c < 7; ++c) {
     std::array<double, 2> st{};
@@ -226,7 +226,7 @@ TEST_F(Textured, ColorsAndPropertiesGoWithThePoints) {
   rest.name = "rest", rest.texture_coordinates = {};
   mapped.colors = rest.colors = colors;
   mapped.properties = properties;
-  rest.properties = std::span(properties).first(1);  // what not all have is left out
+  rest.properties = std::span(properties).first(1);  // properties that only some parts have are omitted
   write_textured(path("a.ply"), std::array{mapped, rest});
   write_textured(path("a.obj"), std::array{mapped});
   const Geometry ply = read(path("a.ply")), obj = read(path("a.obj"));
@@ -261,25 +261,51 @@ TEST_F(Textured, ColorsAndPropertiesGoWithThePoints) {
   EXPECT_THROW(write_textured(path("b.obj"), std::array{mapped}), InvalidArgument);
 }
 
-TEST_F(Textured, RefusesWhatDoesNotFitAndLeavesNothingBehind) {
-  const Shape shape;
+/// A strip of triangles with all levels of red and green, far from the origin.
+TEST_F(Textured, GlbReadsBackWithItsColors) {
+  std::vector<Vec3> points;
+  std::vector<std::array<std::uint8_t, 3>> colors;
+  std::vector<Offset> begin{0};
+  std::vector<Index> vertices;
+  for (int level = 0; level < 256; ++level) {
+    points.push_back({1e6 + level, static_cast<double>(level % 2), 0.5});
+    colors.push_back({static_cast<std::uint8_t>(level), static_cast<std::uint8_t>(255 - level), 128});
+    if (level < 2) continue;
+    for (const int corner : {level - 2, level - 1, level}) vertices.push_back(corner);
+    begin.push_back(static_cast<Offset>(vertices.size()));
+  }
+  MeshPart part{.name = "part", .points = points, .faces = {begin, vertices}};
+  part.colors = colors;
+  write_textured(path("w.glb"), std::array{part});
+  const Geometry back = read(path("w.glb"));
+  EXPECT_EQ(back.points, points);
+  EXPECT_EQ(back.face_vertices, vertices);
+  EXPECT_EQ(back.colors, colors);
+  part.colors = {};
+  write_textured(path("w.glb"), std::array{part});
+  EXPECT_EQ(read(path("w.glb")).points, points);
+}
+
+TEST_F(Textured, RefusesPartsThatDoNotFitTogetherAndLeavesNothing) {
   const Image image = gradient(2, 2);
-  const auto refuses = [&](const MeshPart& part) {
+  const std::pair<const char*, void (*)(Shape&)> faults[] = {
+      {"too few texture coordinates", [](Shape& shape) { shape.uv.resize(12); }},
+      {"NaN in texture coordinates", [](Shape& shape) { shape.uv[3] = std::nan(""); }},
+      {"vertex 6 of 6", [](Shape& shape) { shape.vertices[2] = 6; }},
+      {"NaN in points", [](Shape& shape) { shape.points[3][1] = std::nan(""); }}};
+  const auto expect_refused = [&](const MeshPart& part, const char* fault) {
     for (const char* name : {"x.obj", "x.glb"})
-      EXPECT_THROW(write_textured(path(name), std::array{part}), InvalidArgument);
+      EXPECT_THROW(write_textured(path(name), std::array{part}), InvalidArgument) << fault;
   };
+  for (const auto& [fault, add_fault] : faults) {
+    Shape shape;
+    add_fault(shape);
+    expect_refused(shape.part(&image), fault);
+  }
+  const Shape shape;
   MeshPart part = shape.part(&image);
-  part.texture_coordinates = part.texture_coordinates.first(12);
-  refuses(part);
-  part = shape.part(&image), part.name = "two words";
-  refuses(part);
-  Shape broken;
-  broken.uv[3] = std::nan("");
-  refuses(broken.part(&image));
-  broken = shape, broken.vertices[2] = 6;
-  refuses(broken.part(&image));
-  broken = shape, broken.points[3][1] = std::nan("");
-  refuses(broken.part(&image));
+  part.name = "two words";
+  expect_refused(part, "two words");
   EXPECT_THROW(write_textured(path("x.stl"), std::array{shape.part(nullptr)}), IoError);
   EXPECT_EQ(files_left(), 0U);
 }

@@ -1,1 +1,1 @@
-// Nothing: here only to have what every test includes compiled.
+// Empty: the precompiled header of the tests needs a source.

@@ -1,5 +1,5 @@
 /// \file
-/// A directory of its own for one test.
+/// A temporary folder for one test.
 #pragma once
 
 #include "ahm/io/temporary_folder.hpp"

@@ -1,4 +1,4 @@
-// Loops over threads: every index once, whatever the number of threads, and the first error to the caller.
+// Parallel loops: each index once, on any number of threads; the caller gets the first error.
 #include "ahm/util/parallel.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 namespace ahm::test {
 namespace {
 
-TEST(ParallelChunks, CoverEveryIndexOnceInTheSameChunksOnAnyNumberOfThreads) {
+TEST(ParallelChunks, CoverEachIndexOnceInFixedChunks) {
   for (Offset n : {0, 1, 9, 10, 11, 1000})
     for (unsigned threads : {1u, 3u, 64u}) {
       std::vector<std::atomic<int>> visits(static_cast<std::size_t>(n));
@@ -32,7 +32,7 @@ TEST(ParallelSort, OrdersAsOnOneThread) {
   for (const std::size_t n : {0u, 1u, 65'536u, 65'537u, 200'000u, 524'289u}) {
     std::vector<std::uint32_t> values(n);
     std::uint32_t state = 7;
-    for (std::uint32_t& value : values) value = state = state * 1664525u + 1013904223u;  // a period of 2^32: none twice
+    for (std::uint32_t& value : values) value = state = state * 1664525u + 1013904223u;  // all different
     std::vector<std::uint32_t> expected = values;
     std::sort(expected.begin(), expected.end());
     for (const unsigned threads : {1u, 2u, 5u}) {
@@ -55,7 +55,7 @@ TEST(ParallelChunks, PassOnTheFirstErrorAndStop) {
 }
 
 /// The first chunk fails when a later one has.
-TEST(ParallelChunks, PassOnTheErrorOfTheFirstChunkWhateverFailsBefore) {
+TEST(ParallelChunks, PassOnTheErrorOfTheFirstChunk) {
   std::atomic<bool> later{false};
   const auto body = [&](Offset begin, Offset) {
     if (begin == 0) later.wait(false);
@@ -89,7 +89,7 @@ TEST(RunBoth, RunsBothTasksAndPassesOnTheErrorOfOne) {
   }
 }
 
-TEST(ThreadCount, IsTheNumberAskedForOrThatOfTheCores) {
+TEST(ThreadCount, IsTheArgumentOrTheNumberOfCores) {
   EXPECT_EQ(detail::thread_count(3), 3u);
   EXPECT_GE(detail::thread_count(0), 1u);
 }

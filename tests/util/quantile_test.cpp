@@ -1,4 +1,4 @@
-// Values by their place in the order: those of a sort, on any number of threads.
+// Order statistics are those of a sort, on any number of threads.
 #include "ahm/util/quantile.hpp"
 
 #include <gtest/gtest.h>
@@ -42,8 +42,8 @@ TEST(ValueAt, IsThatOfASort) {
   }
 }
 
-/// What the sample sees says nothing of the rest.
-TEST(ValueAt, IsThatOfASortWhereASampleMisleads) {
+/// The values in the sample differ from all others.
+TEST(ValueAt, IsThatOfASortWhereTheSampleMisleads) {
   const std::size_t n = 1 << 17, step = n >> 10;
   const auto small = [](std::size_t k) { return static_cast<double>(k % 97); };
   expect_values_of_a_sort(numbers(n, [&](std::size_t k) { return k % step == 0 ? 1e6 + small(k) : small(k); }));
