@@ -115,7 +115,7 @@ bool has_area(const TangentGraph& graph, const LogMap& map, Index vertex) {
 
 /// Share of the area within the radius whose vertices have at least the smallest allowed quality.
 double reliable_share(const TangentGraph& graph, const LogMap& map, const std::vector<double>& quality,
-                     const CoverageCommandOptions& options) {
+                      const CoverageCommandOptions& options) {
   double all = 0, reliable = 0;
   for (Index i = 0; i < graph.size(); ++i) {
     if (!(map.distance(Vertex(i)) <= options.path.radius)) continue;

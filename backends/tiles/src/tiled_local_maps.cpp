@@ -80,8 +80,7 @@ std::vector<std::uint64_t> identity_of(const TiledGraph& graph, std::size_t tile
   std::vector<std::uint64_t> result = graph.manifest().identity(tile);
   const LocalMapOptions& o = options.maps;
   for (double x : {o.radius, o.margin, o.heat.t_coef}) result.push_back(std::bit_cast<std::uint64_t>(x));
-  for (auto x :
-       {static_cast<int>(o.k), static_cast<int>(o.heat.variant), static_cast<int>(o.bound_by_straight_line)})
+  for (auto x : {static_cast<int>(o.k), static_cast<int>(o.heat.variant), static_cast<int>(o.bound_by_straight_line)})
     result.push_back(static_cast<std::uint64_t>(x));
   for (const std::string& name :
        options.features)  // only the name of the feature, because the path of a file does not matter
