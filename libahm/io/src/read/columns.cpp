@@ -219,13 +219,13 @@ class ColumnReader {
   /// Moves to the next line of data. Lines of names may be comments: // always, # if there is a name for every column.
   bool next_line() {
     while (lines_.next_filled()) {
-      const std::string_view whole = trimmed(lines_.line());
       line_ = trimmed(without_comment(lines_.line(), '#'));
       if (line_.starts_with("//")) {
         line_.remove_prefix(2);
         if (!has_columns() && are_names(line_)) return true;
       } else if (line_.empty()) {
-        if (!has_columns() && whole.starts_with('#') && are_names(whole.substr(1))) keep_title(whole.substr(1));
+        const std::string_view comment = trimmed(lines_.line()).substr(1);
+        if (!has_columns() && are_names(comment)) keep_title(comment);
       } else if (is_remark(line_) && !begins_with_empty_column()) {
         lines_.skipped().add(lines_.number(), line_);
       } else {
@@ -304,7 +304,7 @@ class ColumnReader {
     if (title_line_ == 0) return false;
     const std::size_t columns = words_.size();
     split(title_, delimiter_, words_);
-    const bool fits = words_.size() == columns;
+    const bool fits = words_.size() == columns && std::ranges::none_of(words_, is_like_number);
     const std::int64_t line = std::exchange(title_line_, fits ? 0 : title_line_);
     if (fits) use_names(line, delimiter_);
     split_row();
