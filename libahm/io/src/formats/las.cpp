@@ -165,7 +165,8 @@ std::vector<ExtraValue> extra_values(const Input& in, const LasHeader& header, s
   for (auto left = load_at<std::uint32_t>(bytes, 100); left > 0 && bytes.size() - record >= head; --left) {
     const std::size_t begin = record + head, length = load_at<std::uint16_t>(bytes, record + 20);
     if (length > bytes.size() - begin) break;
-    const bool describes = bytes.substr(record + 2, user.size()) == user && load_at<std::uint16_t>(bytes, record + 18) == 4;
+    const bool describes =
+        bytes.substr(record + 2, user.size()) == user && load_at<std::uint16_t>(bytes, record + 18) == 4;
     for (std::size_t k = 0; describes && k + description <= length; k += description) {
       std::size_t end = at;
       const std::size_t known = values.size();
@@ -191,16 +192,15 @@ void read_extra(const Input& in, const LasHeader& header, Geometry& g) {
       const double stored = load_value(value.type, in.bytes.data() + header.begin + i * header.stride + value.at,
                                        std::endian::native == std::endian::big);
       exact = exact && (is_exact(value.type) || std::abs(stored) < least_inexact);
-      numbers[i] = stored == value.no_data ? std::numeric_limits<double>::quiet_NaN()
-                                           : stored * value.scale + value.offset;
+      numbers[i] =
+          stored == value.no_data ? std::numeric_limits<double>::quiet_NaN() : stored * value.scale + value.offset;
     }
     if (exact)
       add_property(g, value.name, std::move(numbers));
     else
       g.warnings.push_back({"element_ignored", {}, {}, value.name});
   }
-  if (at < header.stride)
-    g.warnings.push_back({"bytes_ignored", {static_cast<double>(header.stride - at)}, {}});
+  if (at < header.stride) g.warnings.push_back({"bytes_ignored", {static_cast<double>(header.stride - at)}, {}});
 }
 
 Geometry read(const Input& in) {

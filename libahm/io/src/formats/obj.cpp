@@ -58,8 +58,7 @@ class ObjReader {
   Geometry read() {
     g_.format = "OBJ";
     while (statements_.next()) read_statement();
-    if (g_.points.empty())
-      fail(in_, "the file contains no vertex ('v x y z')" + statements_.skipped().hint());
+    if (g_.points.empty()) fail(in_, "the file contains no vertex ('v x y z')" + statements_.skipped().hint());
     if (largest_ > g_.points.size()) {
       fail_at_line(in_, largest_line_,
                    "a face has vertex number " + std::to_string(largest_) + ", but the file has only " +
@@ -90,10 +89,9 @@ class ObjReader {
 
   /// Skips a statement of an extension of the format. A number, or a vertex or face without a blank ("v1.5"), is damage.
   void skip(std::string_view keyword) {
-    const auto begins_number = [](std::string_view text) {
-      return text.find_first_of("0123456789+-.,/") == 0;
-    };
-    const bool needed = begins_number(keyword) || (keyword.find_first_of("vf") == 0 && begins_number(keyword.substr(1)));
+    const auto begins_number = [](std::string_view text) { return text.find_first_of("0123456789+-.,/") == 0; };
+    const bool needed =
+        begins_number(keyword) || (keyword.find_first_of("vf") == 0 && begins_number(keyword.substr(1)));
     if (needed || has_control_characters(statements_.text()))
       fail_at_line(in_, statements_.line(), in_quotes(keyword) + " is not an OBJ keyword; the file is damaged");
     statements_.skipped().add(statements_.line(), statements_.text());

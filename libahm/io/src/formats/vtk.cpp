@@ -28,8 +28,8 @@ constexpr std::array<VtkAttribute, 8> attributes = {{{"vectors", 3},
 
 bool is_vtk_keyword(std::string_view word) {
   using namespace std::string_view_literals;
-  constexpr std::array others = {"dataset"sv,  "field"sv,           "metadata"sv,   "points"sv,
-                                 "vertices"sv, "lines"sv,           "polygons"sv,   "triangle_strips"sv,
+  constexpr std::array others = {"dataset"sv,   "field"sv,        "metadata"sv,   "points"sv,
+                                 "vertices"sv,  "lines"sv,        "polygons"sv,   "triangle_strips"sv,
                                  "cell_data"sv, "lookup_table"sv, "point_data"sv, "color_scalars"sv};
   const auto is = [&](std::string_view lower) { return equals_ignoring_case(word, lower); };
   return std::ranges::any_of(others, is) || std::ranges::any_of(attributes, is, &VtkAttribute::keyword);

@@ -191,8 +191,9 @@ class ColumnReader {
     }
     skip_title();
     if (count_ == 0)
-      fail(in_, (names_line_ > 0 ? "the file contains no points below the column names" : "the file contains no points") +
-                    lines_.skipped().hint());
+      fail(in_,
+           (names_line_ > 0 ? "the file contains no points below the column names" : "the file contains no points") +
+               lines_.skipped().hint());
     if (left_.value_or(0) > 0)
       fail_at_line(in_, lines_.number(),
                    "the file ends before the announced number of points; missing: " + std::to_string(*left_));

@@ -177,7 +177,8 @@ const std::string& GltfFile::buffer(std::uint64_t index) {
 std::filesystem::path GltfFile::file(const std::string& uri) const {
   std::string path = without_escapes(uri);
   std::ranges::replace(path, '\\', '/');
-  const bool has_drive = path.size() > 2 && std::isalpha(static_cast<unsigned char>(path[0])) && path.substr(1, 2) == ":/";
+  const bool has_drive =
+      path.size() > 2 && std::isalpha(static_cast<unsigned char>(path[0])) && path.substr(1, 2) == ":/";
   return in_.path.parent_path() / (has_drive ? std::filesystem::path(path).filename() : std::filesystem::path(path));
 }
 
@@ -238,7 +239,8 @@ void GltfFile::read_sparse(const Json& sparse, Elements e, std::vector<double>& 
   const std::optional<Component> index = find_component(whole(part("indices"), "componentType", 0));
   if (!index) fail(in_, e.name + " has indices of an unsupported type");
   e.count = whole(sparse, "count", 0);
-  const std::vector<double> at = read_elements(part("indices"), {e.name, *index, e.count}), changed = read_elements(part("values"), e);
+  const std::vector<double> at = read_elements(part("indices"), {e.name, *index, e.count}),
+                            changed = read_elements(part("values"), e);
   for (std::uint64_t k = 0; k < e.count; ++k) {
     if (!(at[k] >= 0 && at[k] < static_cast<double>(count)))
       fail(in_, e.name + " changes element " + detail::number(at[k]) + " of " + std::to_string(count));
