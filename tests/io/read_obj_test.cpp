@@ -72,9 +72,9 @@ TEST_F(ReadObj, SkipsStatementsItDoesNotKnowAndNamesThem) {
   EXPECT_EQ(g.points.size(), 4u);
   EXPECT_EQ(g.face_vertices, (std::vector<Index>{0, 1, 2}));
   ASSERT_EQ(g.warnings.size(), 1u);
-  EXPECT_EQ(g.warnings[0].id, "statements_ignored");
-  EXPECT_EQ(g.warnings[0].numbers, (std::vector<double>{4}));
-  EXPECT_EQ(g.warnings[0].name, "'zebra', 'V', 'adobe_x'");
+  EXPECT_EQ(g.warnings[0].id, "lines_skipped");
+  EXPECT_EQ(g.warnings[0].numbers, (std::vector<double>{4, 5}));
+  EXPECT_EQ(g.warnings[0].name, "'zebra 1'");
 }
 
 TEST_F(ReadObj, RefusesLinesThatBeginWithNoWord) {

@@ -78,12 +78,6 @@ TEST_F(ReadPcd, ReadsCompressedFieldByField) {
   EXPECT_EQ(g.points[1], (Vec3{4, 5, 6}));
 }
 
-TEST_F(ReadPcd, RefusesCompressedPadding) {
-  const std::string body = compressed(std::string(28, '\0'));
-  expect_refused("p.pcd", header("x _ y z", "4 1 4 4", "F U F F", "1 2 1 1", 2, "binary_compressed") + body,
-                 {"padding"});
-}
-
 // What follows is no comment: PCL would leave out the point.
 TEST_F(ReadPcd, RefusesTextWithAZeroByte) {
   const std::string text = header("x y z", "4 4 4", "F F F", "1 1 1", 2, "ascii");

@@ -49,8 +49,15 @@ TEST_F(ReadStl, KeepsCornersThatAreNotNumbersApart) {
 }
 
 TEST_F(ReadStl, RefusesEveryTruncation) {
-  for (std::size_t size = 1; size < square.size() - 16; ++size)
-    EXPECT_THROW(read_bytes("t.stl", square.substr(0, size)), IoError) << size;
+  for (std::size_t size = 1; size < square.size() - 16; ++size) {
+    const std::string part = square.substr(0, size);
+    const bool between_facets = part.ends_with("endfacet") || part.ends_with("endfacet\n");
+    if (!between_facets) {
+      EXPECT_THROW(read_bytes("t.stl", part), IoError) << size;
+    } else {
+      EXPECT_EQ(read_bytes("t.stl", part).warnings.at(0).id, "no_end") << size;
+    }
+  }
   const std::string binary = binary_square(2);
   for (std::size_t size = 1; size < binary.size(); ++size)
     EXPECT_THROW(read_bytes("t.stl", binary.substr(0, size)), IoError) << size;

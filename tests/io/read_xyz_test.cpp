@@ -97,7 +97,8 @@ TEST_F(ReadXyz, TellsColorsFromNormalsInNineColumns) {
   for (const char* unclear : {"1 2 3 0 0 1 0 0 1\n", "1 2 3 9 9 9 9 9 9\n"}) {
     const Geometry none = read_bytes("n.xyz", unclear);
     EXPECT_TRUE(none.colors.empty() && none.normals.empty());
-    EXPECT_EQ(none.warnings.back().id, "columns_ignored");
+    EXPECT_EQ(none.properties.size(), 6u);
+    EXPECT_EQ(none.warnings.back().id, "columns_unnamed");
   }
 }
 

@@ -150,7 +150,7 @@ bool exact(const PCLPointField& field, std::span<const double> values) {
   return !wide || std::ranges::all_of(values, [](double x) { return std::abs(x) < largest; });
 }
 
-/// @param header  its fields are those of the cloud, but for the names of padding
+/// @param header  its fields are those of the cloud, except for the names of padding
 void read_properties(const Input& in, const PcdHeader& header, const PCLPointCloud2& cloud, Geometry& g) {
   constexpr std::size_t most_columns = 4096;  // limits the time of the search for equal names
   std::size_t columns = 0;
