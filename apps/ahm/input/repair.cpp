@@ -5,22 +5,8 @@
 
 #include "ahm/error.hpp"
 #include "ahm/surface/mesh_repair.hpp"
-#include "ahm/util/vec.hpp"
 
 namespace ahm::app {
-namespace {
-
-/// Replaces non-finite points by a finite one: backends reject them even where no face uses them.
-io::Geometry finite(io::Geometry input) {
-  const auto good = std::ranges::find_if(input.points, [](const Vec3& p) { return is_finite(p); });
-  if (good == input.points.end()) return input;
-  for (Vec3& point : input.points)
-    if (!is_finite(point)) point = *good;
-  return input;
-}
-
-}  // namespace
-
 std::optional<RepairedMesh> repair(io::Geometry& input, const InputOptions& options) {
   if (!options.repair.any()) return std::nullopt;
   if (input.face_count() == 0)
@@ -53,9 +39,7 @@ SourceSpec in_remaining_faces(const SourceSpec& spec, const RepairedMesh& mesh) 
 BuiltSurface build_repaired(const Backend& backend, const io::Geometry& input, RepairedMesh mesh,
                             const InputOptions& options, const std::optional<SourceSpec>& source,
                             const Progress& progress) {
-  const bool is_finite_everywhere = std::ranges::all_of(input.points, [](const Vec3& p) { return is_finite(p); });
-  BuiltSurface built = is_finite_everywhere ? backend.build(input, options, source, progress)
-                                            : backend.build(finite(input), options, source, progress);
+  BuiltSurface built = backend.build(input, options, source, progress);
   return BuiltSurface(std::make_unique<RepairedSurface>(std::move(built.surface), input.points, std::move(mesh)));
 }
 

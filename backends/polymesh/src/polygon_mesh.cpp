@@ -13,7 +13,7 @@ namespace ahm::polymesh {
 PolygonMesh PolygonMesh::from_faces(std::span<const Vec3> positions, std::span<const Offset> face_begin,
                                     std::span<const Index> face_vertices, NonManifold non_manifold,
                                     std::span<const std::uint8_t> turned) {
-  detail::check_positions(positions);
+  detail::check_positions(positions, face_vertices);
   PolygonMesh mesh(
       detail::GluedMesh(static_cast<Index>(positions.size()), {face_begin, face_vertices}, non_manifold, turned));
   mesh.collect_corners();

@@ -39,12 +39,15 @@ void check_lengths(std::span<const Triangle> faces, std::span<const std::array<d
     }
 }
 
+std::span<const Index> corners_of(std::span<const Triangle> faces) {
+  return {faces.empty() ? nullptr : faces.front().data(), 3 * faces.size()};
+}
+
 detail::GluedMesh glued(Index vertices, std::span<const Triangle> faces, NonManifold non_manifold,
                         std::span<const std::uint8_t> turned) {
   std::vector<Offset> begin(faces.size() + 1);
   for (std::size_t f = 0; f < begin.size(); ++f) begin[f] = static_cast<Offset>(3 * f);
-  const std::span corners(faces.empty() ? nullptr : faces.front().data(), 3 * faces.size());
-  return detail::GluedMesh(vertices, {begin, corners}, non_manifold, turned);
+  return detail::GluedMesh(vertices, {begin, corners_of(faces)}, non_manifold, turned);
 }
 
 }  // namespace
@@ -55,7 +58,7 @@ TriangleMesh::TriangleMesh(Index vertices, std::span<const Triangle> faces, NonM
 
 TriangleMesh TriangleMesh::from_positions(std::span<const Vec3> positions, std::span<const Triangle> faces,
                                           NonManifold non_manifold, std::span<const std::uint8_t> turned) {
-  detail::check_positions(positions);
+  detail::check_positions(positions, corners_of(faces));
   TriangleMesh mesh(static_cast<Index>(positions.size()), faces, non_manifold, turned);
   mesh.input_.assign(positions.begin(), positions.end());
   std::vector<Vec3> points;

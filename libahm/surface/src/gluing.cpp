@@ -264,16 +264,19 @@ Gluing glue(Index vertices, const FaceList& faces, NonManifold non_manifold, std
   return gluer.take();
 }
 
-void check_positions(std::span<const Vec3> points) {
+void check_positions(std::span<const Vec3> points, std::span<const Index> corners) {
   if (points.size() > static_cast<std::size_t>(std::numeric_limits<Index>::max() / 2))
     throw InvalidGeometry("the mesh has " + detail::counted(points.size(), "vertex") + "; at most 2^30 are supported");
-  for (std::size_t v = 0; v < points.size(); ++v)
-    for (double x : points[v])
-      if (!std::isfinite(x))
-        throw InvalidGeometry("not_finite",
-                              "vertex " + std::to_string(v) + " is (" + number(points[v][0]) + ", " +
-                                  number(points[v][1]) + ", " + number(points[v][2]) + ")",
-                              "coordinates must be finite");
+  const auto count = static_cast<Index>(points.size());
+  Index worst = count;  // the lowest of these vertices
+  for (const Index v : corners)
+    if (v >= 0 && v < worst && !is_finite(points[v])) worst = v;
+  if (worst == count) return;
+  const Vec3& point = points[worst];
+  throw InvalidGeometry("not_finite",
+                        "vertex " + std::to_string(worst) + " is (" + number(point[0]) + ", " + number(point[1]) +
+                            ", " + number(point[2]) + ")",
+                        "coordinates must be finite");
 }
 
 NormalizedPositions normalize_positions(std::vector<Vec3> points, std::span<const Index> part) {

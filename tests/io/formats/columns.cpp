@@ -14,12 +14,14 @@ void add_xyz(Cases& c) {
          "1 2 3, 4 5 6");
   c.good("normals.xyz", "1 2 3 0 0 1\n4 5 6 0 1 0\n", "1 2 3, 4 5 6; normals 0 0 1, 0 1 0");
   c.good("colors.txt", "1 2 3 0 0 1\n4 5 6 200 1 0\n", "1 2 3, 4 5 6; colors 0 0 1, 200 1 0; columns_as_colors 4 6");
-  c.good("four.xyz", "1 2 3 0.7\n4 5 6 word\n", "1 2 3, 4 5 6; columns_ignored 4");
+  c.good("four.xyz", "1 2 3 0.7\n4 5 6 word\n", "1 2 3, 4 5 6; columns_unnamed 4 4; column_ignored column_4");
   c.good("nine.xyz", "1 2 3 200 10 0 0 0 1\n4 5 6 0 0 0 0 1 0\n",
          "1 2 3, 4 5 6; normals 0 0 1, 0 1 0; colors 200 10 0, 0 0 0; columns_as_colors 4 6");
-  c.good("normals_twice.xyz", "1 2 3 0 0 1 0 0 1\n", "1 2 3; columns_ignored 9");
+  c.good("normals_twice.xyz", "1 2 3 0 0 1 0 0 1\n",
+         "1 2 3; column_4 0; column_5 0; column_6 1; column_7 0; column_8 0; column_9 1; columns_unnamed 4 9");
   c.good("colors_twice.xyz", "1 2 3 9 9 9 9 9 9\n",
-         "1 2 3; columns_as_colors 4 6; columns_as_colors 7 9; columns_ignored 9");
+         "1 2 3; column_4 9; column_5 9; column_6 9; column_7 9; column_8 9; column_9 9; columns_as_colors 4 6; "
+         "columns_as_colors 7 9; columns_unnamed 4 9");
   for (const char* text : {"1.5,2,3\n4,5,6\n", "1.5, 2, 3\n4,5, 6\n", "1.5 , 2 ,3\n4,5,6\n", "1.5;2;3\n4;5;6\n",
                            "1.5;2;3;\n4;5;6;\n", "1.5,2,3,\n4,5,6,\n"})
     c.good("delimiters.xyz", text, "1.5 2 3, 4 5 6");

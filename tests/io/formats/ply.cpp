@@ -97,9 +97,9 @@ void add_good(Cases& c) {
          "1 2 3; element_ignored more");
   // Lines without meaning are ignored where they cannot shift values.
   std::string text = text_header("1", "TextureFile a.png\n") + "1 2 3\n";
-  c.good("lines.ply", text.insert(4, "made by hand\n"), "1 2 3; header_lines_ignored 2");
+  c.good("lines.ply", text.insert(4, "made by hand\n"), "1 2 3; lines_skipped 2 2 'made by hand'");
   c.good("line.ply", std::string(binary_header()).insert(4, "made by hand\n") + "abc",
-         "97 98 99; header_lines_ignored 1");
+         "97 98 99; lines_skipped 1 2 'made by hand'");
 }
 
 void add_bad_headers(Cases& c) {
@@ -118,7 +118,8 @@ void add_bad_headers(Cases& c) {
   c.bad("list.ply",
         head + "property list uchar double x\nproperty double y\nproperty double z\nend_header\n1 0 0 0 0\n",
         {"x", "list"});
-  c.bad("list.ply", head + "property list uchar double things\n" + xyz + "end_header\n1 0 0 0 0\n", {"things", "list"});
+  c.good("list.ply", head + "property list uchar double things\n" + xyz + "end_header\n1 0 0 0 0\n",
+         "0 0 0; list_ignored things");
   c.bad("missing.ply", head + "property float x\nproperty float z\nend_header\n1 2\n", {"'y'"});
   c.bad("twice.ply", head + xyz + "property float x\nend_header\n1 2 3 4\n", {"'x'", "twice"});
   c.bad("upper.ply", head + xyz + "property float X\nend_header\n1 2 3 4\n", {"twice"});
@@ -131,12 +132,12 @@ void add_bad_headers(Cases& c) {
   c.bad("plx.ply", "plx\n", {"line 1"});
   c.bad("format.ply", "ply\nelement vertex 0\n" + xyz + "end_header\n", {"format"});
   c.bad("property.ply", "ply\nformat ascii 1.0\nproperty float x\nend_header\n", {"line 3"});
-  c.bad("type.ply", head + "property int64 x\nend_header\n", {"line 4", "int64"});
+  c.bad("type.ply", head + "property int65 x\nend_header\n", {"line 4", "int65"});
   c.bad("utf8.ply", "ply\nformat utf8 1.0\nend_header\n", {"line 2", "utf8"});
   c.bad("vertices.ply", text_header("1", "element vertex 1\nproperty float x\n"), {"twice"});
   const std::string face = "element face 1\nproperty ";
-  c.bad("float.ply", text_header("1", face + "list float int vertex_indices\n") + "0 0 0\n1 0\n", {"float"});
-  c.bad("index.ply", text_header("1", face + "list uchar float vertex_indices\n") + "0 0 0\n1 0\n", {"whole"});
+  c.good("float.ply", text_header("1", face + "list float int vertex_indices\n") + "0 0 0\n1 0\n", "0 0 0; faces 0");
+  c.good("index.ply", text_header("1", face + "list uchar float vertex_indices\n") + "0 0 0\n1 0\n", "0 0 0; faces 0");
   c.bad("flags.ply", text_header("1", face + "uchar flags\n") + "0 0 0\n1\n", {"vertex_indices"});
 }
 

@@ -32,6 +32,8 @@ class GltfReader {
   Geometry read() {
     g_.format = in_.bytes.starts_with("glTF") ? "glTF binary" : "glTF text";
     for (const GltfPlacement& placed : placed_meshes(in_, file_)) read_mesh(placed);
+    if (const char* instances = "EXT_mesh_gpu_instancing"; file_.lists("extensionsUsed", instances))
+      g_.warnings.push_back({"element_ignored", {}, {}, instances});
     if (g_.points.empty()) fail(in_, "it contains no vertex");
     if (lines_ > 0) g_.warnings.push_back({"lines_ignored", {static_cast<double>(lines_)}, {}});
     if (has_colors_ && lights_.size() == g_.points.size()) keep_colors();
@@ -59,25 +61,29 @@ class GltfReader {
       ++lines_;
       return;
     }
-    refuse_compression(primitive);
     const auto attributes = primitive.find("attributes");
     if (attributes == primitive.end() || !attributes->is_object()) fail(in_, "a primitive has no attributes");
     const std::uint64_t position = file_.whole(*attributes, "POSITION", none);
     if (position == none) fail(in_, "a primitive has no POSITION");
+    refuse_compression(primitive, position);
     const std::size_t first = g_.points.size(), count = add_points(position, columns);
     add_lights(file_.whole(*attributes, "COLOR_0", none), base_color(primitive), first, count);
     if (mode != points)
       add_faces(mode, corners(file_.whole(primitive, "indices", none), count), first, mirrors(columns));
   }
 
-  void refuse_compression(const Json& primitive) const {
+  /// Compressed primitives may also have uncompressed data, if the file does not require the extension.
+  void refuse_compression(const Json& primitive, std::uint64_t position) const {
     const auto extensions = primitive.find("extensions");
-    if (extensions != primitive.end() && extensions->is_object() && extensions->contains("KHR_draco_mesh_compression"))
-      fail(in_, "its meshes are compressed (Draco), which is not supported; save it without compression");
-    const auto required = file_.root().find("extensionsRequired");
-    if (required != file_.root().end() &&
-        std::ranges::find(*required, Json("EXT_meshopt_compression")) != required->end())
-      fail(in_, "its meshes are compressed (meshopt), which is not supported; save it without compression");
+    const bool has_draco = extensions != primitive.end() && extensions->contains("KHR_draco_mesh_compression");
+    const auto refuse = [&](const char* name) {
+      fail(in_, std::string("its meshes are compressed (") + name +
+                    "), which is not supported; save it without compression");
+    };
+    if (file_.lists("extensionsRequired", "KHR_draco_mesh_compression") ||
+        (has_draco && !file_.item("accessors", position).contains("bufferView")))
+      refuse("Draco");
+    if (file_.lists("extensionsRequired", "EXT_meshopt_compression")) refuse("meshopt");
   }
 
   GltfArray vectors(std::uint64_t accessor, std::size_t least_width) {

@@ -4,6 +4,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "formats/format.hpp"
 #include "little_endian.hpp"
@@ -87,7 +90,7 @@ LasHeader parse_header(const Input& in) {
   constexpr unsigned compressed = 0xC0;  // LASzip sets these bits
   if ((header.format & compressed) != 0)
     fail_at_byte(in, 104,
-                 "the points are compressed (LAZ); convert the file to .las with laszip, las2las or pdal translate");
+                 "the points are compressed (LAZ); convert the file with 'pdal translate FILE.laz FILE.las' or laszip");
   if (header.format >= records.size())
     fail_at_byte(in, 104, "point format " + std::to_string(header.format) + " is not supported; 0 to 10 are");
   if (header.stride < records[header.format].size)
@@ -116,6 +119,90 @@ void read_colors(const Input& in, const LasHeader& header, std::size_t at, Geome
   if (auto colors = any ? to_colors(values, true) : std::nullopt) g.colors = std::move(*colors);
 }
 
+/// A value per point beyond its format, as described in the file.
+struct ExtraValue {
+  std::string name;
+  PlyType type = PlyType::uint8;
+  std::size_t at = 0;  ///< offset in the record, bytes
+  double scale = 1, offset = 0;
+  std::optional<double> no_data = {};  ///< stored where there is no value
+};
+
+/// One description of extra bytes, of 192 bytes: type, options, name, "no data", scale and offset, the last three for up to three values.
+/// @param at  offset of its bytes in the record. Increased by their size
+void describe(std::string_view text, std::size_t& at, std::vector<ExtraValue>& values) {
+  constexpr std::size_t name_at = 4, no_data_at = 40, scale_at = 112, offset_at = 136;
+  enum : unsigned { has_no_data = 1, has_scale = 8, has_offset = 16 };
+  constexpr std::array types = {PlyType::uint8, PlyType::int8,   PlyType::uint16, PlyType::int16,   PlyType::uint32,
+                                PlyType::int32, PlyType::uint64, PlyType::int64,  PlyType::float32, PlyType::float64};
+  const unsigned number = load_at<std::uint8_t>(text, 2), options = load_at<std::uint8_t>(text, 3);
+  constexpr unsigned most_values = 3;
+  if (number == 0 || number > most_values * types.size()) {  // bytes without a type; `options` is their number
+    at += options;
+    return;
+  }
+  const PlyType type = types[(number - 1) % types.size()];
+  const std::size_t count = (number - 1) / types.size() + 1;
+  const bool swap = std::endian::native == std::endian::big;
+  const PlyType wide = !is_whole(type) ? PlyType::float64 : number % 2 == 0 ? PlyType::int64 : PlyType::uint64;
+  const std::string name(text.substr(name_at, std::min<std::size_t>(32, text.substr(name_at).find('\0'))));
+  for (std::size_t k = 0; k < count; ++k, at += size_of(type)) {
+    ExtraValue& value = values.emplace_back(ExtraValue{count == 1 ? name : name + '_' + std::to_string(k), type, at});
+    if ((options & has_no_data) != 0) value.no_data = load_value(wide, text.data() + no_data_at + 8 * k, swap);
+    if ((options & has_scale) != 0) value.scale = load_at<double>(text, scale_at + 8 * k);
+    if ((options & has_offset) != 0) value.offset = load_at<double>(text, offset_at + 8 * k);
+  }
+}
+
+/// The values that the variable length record "LASF_Spec" 4 describes.
+/// @param at  offset of the first extra byte; changed to the offset of the first byte without a description
+std::vector<ExtraValue> extra_values(const Input& in, const LasHeader& header, std::size_t& at) {
+  constexpr std::size_t head = 54, description = 192, most = 4096;  // most: limits the search for equal names
+  constexpr std::string_view user("LASF_Spec", 10);
+  const std::string_view bytes = std::string_view(in.bytes).substr(0, header.begin);
+  std::vector<ExtraValue> values;
+  std::size_t record = load_at<std::uint16_t>(bytes, 94);
+  for (auto left = load_at<std::uint32_t>(bytes, 100); left > 0 && bytes.size() - record >= head; --left) {
+    const std::size_t begin = record + head, length = load_at<std::uint16_t>(bytes, record + 20);
+    if (length > bytes.size() - begin) break;
+    const bool describes =
+        bytes.substr(record + 2, user.size()) == user && load_at<std::uint16_t>(bytes, record + 18) == 4;
+    for (std::size_t k = 0; describes && k + description <= length; k += description) {
+      std::size_t end = at;
+      const std::size_t known = values.size();
+      describe(bytes.substr(begin + k, description), end, values);
+      if (end > header.stride || values.size() > most) {
+        values.resize(known, {});
+        return values;
+      }
+      at = end;
+    }
+    record = begin + length;
+  }
+  return values;
+}
+
+/// Reads the extra bytes of the points as properties. Integers that doubles do not represent are ignored with a warning.
+void read_extra(const Input& in, const LasHeader& header, Geometry& g) {
+  std::size_t at = records[header.format].size;
+  for (const ExtraValue& value : extra_values(in, header, at)) {
+    std::vector<double> numbers(header.points);
+    bool exact = true;
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      const double stored = load_value(value.type, in.bytes.data() + header.begin + i * header.stride + value.at,
+                                       std::endian::native == std::endian::big);
+      exact = exact && (is_exact(value.type) || std::abs(stored) < least_inexact);
+      numbers[i] =
+          stored == value.no_data ? std::numeric_limits<double>::quiet_NaN() : stored * value.scale + value.offset;
+    }
+    if (exact)
+      add_property(g, value.name, std::move(numbers));
+    else
+      g.warnings.push_back({"element_ignored", {}, {}, value.name});
+  }
+  if (at < header.stride) g.warnings.push_back({"bytes_ignored", {static_cast<double>(header.stride - at)}, {}});
+}
+
 Geometry read(const Input& in) {
   const LasHeader header = parse_header(in);
   const Record& record = records[header.format];
@@ -134,6 +221,7 @@ Geometry read(const Input& in) {
   }
   for (Property* property : {&intensity, &classification}) g.properties.push_back(std::move(*property));
   if (record.color != 0) read_colors(in, header, record.color, g);
+  read_extra(in, header, g);
   return g;
 }
 

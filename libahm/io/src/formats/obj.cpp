@@ -20,7 +20,7 @@ class Statements {
   explicit Statements(std::string_view text) : lines_(text) {}
 
   bool next() {
-    if (!lines_.next_filled('#')) return false;
+    if (!lines_.next_data('#')) return false;
     number_ = lines_.number();
     line_ = lines_.line();
     if (!line_.ends_with('\\')) return true;
@@ -36,6 +36,7 @@ class Statements {
   }
   std::string_view text() const noexcept { return line_; }
   std::int64_t line() const noexcept { return number_; }
+  SkippedLines& skipped() noexcept { return lines_.skipped(); }
 
  private:
   Lines lines_;
@@ -57,7 +58,7 @@ class ObjReader {
   Geometry read() {
     g_.format = "OBJ";
     while (statements_.next()) read_statement();
-    if (g_.points.empty()) fail(in_, "the file contains no vertex ('v x y z')");
+    if (g_.points.empty()) fail(in_, "the file contains no vertex ('v x y z')" + statements_.skipped().hint());
     if (largest_ > g_.points.size()) {
       fail_at_line(in_, largest_line_,
                    "a face has vertex number " + std::to_string(largest_) + ", but the file has only " +
@@ -65,8 +66,7 @@ class ObjReader {
     }
     finish_normals();
     finish_colors();
-    if (ignored_ > 0)
-      g_.warnings.push_back({"statements_ignored", {static_cast<double>(ignored_)}, {}, ignored_names_});
+    statements_.skipped().report(g_.warnings);
     return std::move(g_);
   }
 
@@ -83,21 +83,18 @@ class ObjReader {
     } else if (keyword == "f") {
       read_face(rest);
     } else if (!is_known(keyword)) {
-      ignore(keyword);
+      skip(keyword);
     }
   }
 
-  /// Ignores a statement of an extension of the format, and counts it. Fails if the keyword is not a word.
-  void ignore(std::string_view keyword) {
-    const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
-    if (!letter(keyword.front()) ||
-        !std::ranges::all_of(keyword, [&](char c) { return letter(c) || (c >= '0' && c <= '9'); }))
+  /// Skips a statement of an extension of the format. A number, or a vertex or face without a blank ("v1.5"), is damage.
+  void skip(std::string_view keyword) {
+    const auto begins_number = [](std::string_view text) { return text.find_first_of("0123456789+-.,/") == 0; };
+    const bool needed =
+        begins_number(keyword) || (keyword.find_first_of("vf") == 0 && begins_number(keyword.substr(1)));
+    if (needed || has_control_characters(statements_.text()))
       fail_at_line(in_, statements_.line(), in_quotes(keyword) + " is not an OBJ keyword; the file is damaged");
-    constexpr std::size_t most_named = 5;
-    ++ignored_;
-    if (named_.size() == most_named || std::ranges::find(named_, keyword) != named_.end()) return;
-    named_.emplace_back(keyword);
-    ignored_names_ += (ignored_names_.empty() ? "" : ", ") + in_quotes(keyword);
+    statements_.skipped().add(statements_.line(), statements_.text());
   }
 
   /// Reads the numbers after x, y, z: a weight, or red, green, blue.
@@ -206,9 +203,6 @@ class ObjReader {
   bool normals_match_ = true;
   bool extras_ = false;
   std::vector<Vec3> extra_;  ///< three numbers after x, y, z, up to the first vertex without them
-  std::size_t ignored_ = 0;
-  std::vector<std::string> named_;
-  std::string ignored_names_;
   std::uint64_t largest_ = 0;
   std::int64_t largest_line_ = 0;
 };

@@ -21,14 +21,15 @@ class Words {
   std::string_view next(const char* expected) {
     for (std::string_view word = next_word(rest_);; word = next_word(rest_)) {
       if (!word.empty()) return word;
-      if (!lines_.next_filled('#')) fail_at_line(in_, lines_.number(), std::string("the file ends before ") + expected);
+      if (!lines_.next_data('#')) fail_at_line(in_, lines_.number(), std::string("the file ends before ") + expected);
       rest_ = lines_.line();
     }
   }
 
   /// The remaining words of the line.
   std::string_view rest_of_line() noexcept { return std::exchange(rest_, {}); }
-  bool at_end() { return rest_.empty() && !lines_.next_filled('#'); }
+  bool at_end() { return rest_.empty() && !lines_.next_data('#'); }
+  const SkippedLines& skipped() noexcept { return lines_.skipped(); }
   std::int64_t line() const noexcept { return lines_.number(); }
   std::size_t position() const noexcept { return lines_.position() - rest_.size(); }
 
@@ -162,6 +163,7 @@ Geometry read(const Input& in) {
   read_vertices(in, words, header, g);
   read_faces(in, words, header, g);
   if (!words.at_end()) g.warnings.push_back({"goes_on_after_faces", {}, {}});
+  words.skipped().report(g.warnings);
   return g;
 }
 

@@ -4,9 +4,16 @@
 // One loop over items and properties reads all three encodings.
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cmath>
 #include <limits>
+#include <memory>
+#include <span>
+#include <utility>
 
+#include "ahm/util/text.hpp"
 #include "formats/format.hpp"
+#include "read/bytes.hpp"
 #include "read/columns.hpp"
 #include "read/ply_header.hpp"
 #include "read/point_stream.hpp"
@@ -15,43 +22,100 @@
 namespace ahm::io {
 namespace {
 
+/// Bytes of binary data, from a file in memory or block by block.
+class BinarySource {
+ public:
+  BinarySource(const Input& in, std::size_t begin)
+      : in_(in), window_(std::string_view(in.bytes).substr(begin)), position_(begin) {}
+  BinarySource(const ByteStream& file, std::size_t begin)
+      : in_(file.head()), file_(std::make_unique<ByteStream>(file, begin)), position_(begin) {}
+
+  std::uint64_t position() const { return position_; }
+  std::uint64_t left() const { return in_.size() - position_; }
+
+  /// The next bytes, valid until the next call. @param size  at most 8, and at most `left()`
+  const char* take(std::size_t size) {
+    if (window_.size() < size) refill(size);
+    const char* bytes = window_.data();
+    window_.remove_prefix(size);
+    position_ += size;
+    return bytes;
+  }
+  /// @param size  at most `left()`
+  void skip(std::uint64_t size) {
+    position_ += size;
+    const std::uint64_t here = std::min<std::uint64_t>(size, window_.size());
+    window_.remove_prefix(here);
+    if (file_) file_->skip(size - here);
+  }
+
+ private:
+  void refill(std::size_t size) {
+    constexpr std::size_t block = std::size_t{1} << 18;
+    std::string next(window_);
+    const std::size_t kept = next.size();
+    next.resize(kept + block);
+    next.resize(kept + file_->read(std::span(next).subspan(kept)));
+    buffer_ = std::move(next);
+    window_ = buffer_;
+    if (window_.size() < size) fail_at_byte(in_, position_, "the file became shorter while it was read");
+  }
+
+  const Input& in_;
+  std::unique_ptr<ByteStream> file_;  ///< null: the file is in memory
+  std::string buffer_;                ///< current block of the file
+  std::string_view window_;           ///< bytes that have not been taken
+  std::uint64_t position_;            ///< position of the next byte in the file
+};
+
 /// Source of the values: in text, one line per item; else bytes.
 class Body {
  public:
-  Body(const Input& in, const PlyHeader& header, Lines&& lines)
+  /// @param lines   the text after the header; empty in binary files
+  /// @param binary  the bytes after the header; not used in text files
+  Body(const Input& in, const PlyHeader& header, Lines&& lines, BinarySource&& binary)
       : in_(in),
         text_(header.format == PlyFormat::ascii),
         swap_(is_swapped(header.format)),
         lines_(std::move(lines)),
-        position_(header.body) {}
+        binary_(std::move(binary)) {
+    lines_.skipped() = header.skipped;
+  }
 
   void begin_item(const PlyElement& element, std::uint64_t item) {
     element_ = &element;
     item_ = item;
     if (!text_) return;
-    if (!lines_.next_filled()) fail_at_line(in_, lines_.number(), "the file ends before " + name_of_item());
+    if (!lines_.next_data()) fail_at_line(in_, lines_.number(), "the file ends before " + name_of_item());
     rest_ = lines_.line();
   }
 
   double value(PlyType type) {
     if (text_) return real_or_fail(in_, lines_.number(), word());
-    const std::size_t size = size_of(type);
-    need(size);
-    const double result = load_value(type, in_.bytes.data() + position_, swap_);
-    position_ += size;
+    return load_value(type, take(type), swap_);
+  }
+
+  /// A value that doubles represent exactly. @throws IoError
+  double exact(PlyType type) {
+    const double result = value(type);
+    if (!is_exact(type) && std::abs(result) >= least_inexact)
+      fail_here(name_of_item() + " has a coordinate of 2^53 or more, which has no double precision");
     return result;
   }
 
-  /// An exact whole number: doubles represent the integers of all PLY types.
+  /// A whole number of any type. @throws IoError for fractions, and numbers out of range
   std::int64_t whole(PlyType type) {
-    if (text_) return whole_or_fail(in_, lines_.number(), word());
-    return static_cast<std::int64_t>(value(type));
+    if (text_ && is_whole(type)) return whole_or_fail(in_, lines_.number(), word());
+    if (!text_ && !is_exact(type)) return whole_of_64_bits(type);
+    const double result = value(type);
+    if (result == std::floor(result) && std::abs(result) < least_inexact) return static_cast<std::int64_t>(result);
+    fail_here(name_of_item() + " has " + detail::number(result) + " where a whole number is required");
   }
 
   /// The count of a list. Fails if the rest of the line or file is too short for so many values.
   std::size_t list_count(const PlyProperty& list) {
     const std::int64_t count = whole(*list.count_type);
-    const std::size_t left = text_ ? (rest_.size() + 1) / 2 : (in_.bytes.size() - position_) / size_of(list.type);
+    const std::uint64_t left = text_ ? (rest_.size() + 1) / 2 : binary_.left() / size_of(list.type);
     if (count < 0 || static_cast<std::uint64_t>(count) > left) {
       fail_here("list '" + list.name + "' of " + name_of_item() + " has count " + std::to_string(count) +
                 ", but at most " + std::to_string(left) + " can follow");
@@ -65,7 +129,7 @@ class Body {
       for (; count > 0; --count) word();
     } else {
       need(count * size_of(property.type));
-      position_ += count * size_of(property.type);
+      binary_.skip(count * size_of(property.type));
     }
   }
 
@@ -73,11 +137,13 @@ class Body {
     if (text_ && !next_word(rest_).empty()) fail_here("more values than " + name_of_item() + " has properties");
   }
 
-  bool at_end() { return text_ ? !lines_.next_filled() : position_ == in_.bytes.size(); }
+  bool at_end() { return text_ ? !lines_.next_data() : binary_.left() == 0; }
+  /// Lines of the header and the body without a meaning.
+  const SkippedLines& skipped() noexcept { return lines_.skipped(); }
 
   [[noreturn]] void fail_here(const std::string& what) const {
     if (text_) fail_at_line(in_, lines_.number(), what);
-    fail_at_byte(in_, position_, what);
+    fail_at_byte(in_, binary_.position(), what);
   }
 
   std::string name_of_item() const {
@@ -91,15 +157,29 @@ class Body {
     return word;
   }
 
-  void need(std::size_t size) const {
-    if (size > in_.bytes.size() - position_) fail_here("the file ends within " + name_of_item());
+  const char* take(PlyType type) {
+    need(size_of(type));
+    return binary_.take(size_of(type));
+  }
+
+  std::int64_t whole_of_64_bits(PlyType type) {
+    std::array<char, 8> raw;
+    std::copy_n(take(type), raw.size(), raw.begin());
+    if (swap_) std::ranges::reverse(raw);
+    const auto result = std::bit_cast<std::int64_t>(raw);
+    if (type == PlyType::uint64 && result < 0) fail_here(name_of_item() + " has a whole number of 2^63 or more");
+    return result;
+  }
+
+  void need(std::uint64_t size) const {
+    if (size > binary_.left()) fail_here("the file ends within " + name_of_item());
   }
 
   const Input& in_;
   bool text_;
   bool swap_;
   Lines lines_;
-  std::size_t position_;
+  BinarySource binary_;
   std::string_view rest_;
   const PlyElement* element_ = nullptr;
   std::uint64_t item_ = 0;
@@ -109,7 +189,7 @@ class Body {
 constexpr std::size_t unused = 9;
 constexpr std::array<std::string_view, unused> roles = {"x", "y", "z", "nx", "ny", "nz", "red", "green", "blue"};
 
-/// The role of every property. Normals and colors are used only if all three components exist.
+/// The role of every property. Normals and colors are used only if all three components exist and none is a list.
 std::vector<std::size_t> assign_roles(const Input& in, const PlyElement& vertex) {
   std::vector<std::size_t> role_of(vertex.properties.size(), unused);
   for (std::size_t group = 0; group < unused; group += 3) {
@@ -117,9 +197,14 @@ std::vector<std::size_t> assign_roles(const Input& in, const PlyElement& vertex)
     bool complete = true;
     for (std::size_t k = 0; k < 3; ++k) {
       found[k] = vertex.find(roles[group + k]);
-      if (!found[k] && group == 0) {
-        fail_at_line(in, vertex.line, "the vertices have no property '" + std::string(roles[k]) + "'");
+      const bool is_list = found[k] && vertex.properties[*found[k]].count_type;
+      if (group == 0 && (!found[k] || is_list)) {
+        const std::string name(roles[k]);
+        fail_at_line(in, vertex.line,
+                     is_list ? "property '" + name + "' of the vertices is a list; it must be a number"
+                             : "the vertices have no property '" + name + "'");
       }
+      if (is_list) found[k].reset();
       complete = complete && found[k];
     }
     for (std::size_t k = 0; complete && k < 3; ++k) role_of[*found[k]] = group + k;
@@ -166,42 +251,63 @@ class Colors {
   std::vector<Vec3> numbers_;
 };
 
+/// Prepares the values of the scalar properties without a role, and warns about lists, which are skipped.
+/// @return the values by property; empty where it has a role or is a list
+std::vector<std::vector<double>> other_values(const PlyElement& vertex, const std::vector<std::size_t>& role_of,
+                                              std::size_t n, Geometry& g) {
+  std::vector<std::vector<double>> values(role_of.size());
+  for (std::size_t p = 0; p < role_of.size(); ++p) {
+    const PlyProperty& property = vertex.properties[p];
+    if (property.count_type) g.warnings.push_back({"list_ignored", {}, {}, property.name});
+    if (role_of[p] == unused && !property.count_type) values[p].resize(n);
+  }
+  return values;
+}
+
+void keep_others(const PlyElement& vertex, std::vector<std::vector<double>>& values, Geometry& g) {
+  for (std::size_t p = 0; p < values.size(); ++p) {
+    const PlyProperty& property = vertex.properties[p];
+    if (values[p].empty()) continue;
+    const auto inexact = [](double x) { return std::abs(x) >= least_inexact; };
+    if (!is_exact(property.type) && std::ranges::any_of(values[p], inexact))
+      g.warnings.push_back({"element_ignored", {}, {}, property.name});
+    else
+      add_property(g, property.name, std::move(values[p]));
+  }
+}
+
 /// @param take  receives every point, and `g` keeps only the last one; null: `g` keeps all points
 void read_vertices(const Input& in, const PlyElement& vertex, Body& body, Geometry& g, const TakePoint* take) {
-  for (const PlyProperty& p : vertex.properties) {
-    if (p.count_type) {
-      fail_at_line(in, vertex.line,
-                   "property '" + p.name + "' of the vertices is a list; vertices must have plain values");
-    }
-  }
   check_vertex_count(in, vertex.count);
   const std::vector<std::size_t> role_of = assign_roles(in, vertex);
   const auto n = static_cast<std::size_t>(vertex.count), kept = take != nullptr ? std::size_t{1} : n;
   g.points.resize(kept);
   if (std::ranges::count(role_of, std::size_t{3}) > 0) g.normals.resize(kept);
   Colors colors(role_of, vertex, kept);
-  for (std::size_t p = 0; p < role_of.size(); ++p)
-    if (role_of[p] == unused) add_property(g, vertex.properties[p].name, std::vector<double>(kept));
+  std::vector<std::vector<double>> others = other_values(vertex, role_of, kept, g);
   for (std::size_t item = 0; item < n; ++item) {
     const std::size_t i = take != nullptr ? 0 : item;
     body.begin_item(vertex, item);
-    auto property = g.properties.begin();
     for (std::size_t p = 0; p < role_of.size(); ++p) {
       const std::size_t role = role_of[p];
-      if (role == unused) {
-        (property++)->values[i] = body.value(vertex.properties[p].type);
+      const PlyProperty& property = vertex.properties[p];
+      if (property.count_type) {
+        body.skip(property);
+      } else if (role == unused) {
+        others[p][i] = body.value(property.type);
       } else if (role < 3) {
-        g.points[i][role] = body.value(vertex.properties[p].type);
+        g.points[i][role] = body.exact(property.type);
       } else if (role < 6) {
-        g.normals[i][role - 3] = body.value(vertex.properties[p].type);
+        g.normals[i][role - 3] = body.value(property.type);
       } else {
-        colors.read(vertex.properties[p].type, body, i, role - 6);
+        colors.read(property.type, body, i, role - 6);
       }
     }
     body.end_item();
     if (take != nullptr) (*take)(g.points[i]);
   }
   colors.move_to(g);
+  keep_others(vertex, others, g);
 }
 
 void read_corners(const PlyProperty& list, Body& body, Geometry& g) {
@@ -243,9 +349,7 @@ std::size_t find_corners(const Input& in, const PlyElement& element) {
   if (plural && singular) fail_at_line(in, element.line, "the faces have both 'vertex_indices' and 'vertex_index'");
   if (!plural && !singular) fail_at_line(in, element.line, "the faces have no list 'vertex_indices'");
   const PlyProperty& list = element.properties[plural ? *plural : *singular];
-  if (!list.count_type || !is_whole(list.type)) {
-    fail_at_line(in, element.line, "property '" + list.name + "' must be a list of whole numbers");
-  }
+  if (!list.count_type) fail_at_line(in, element.line, "property '" + list.name + "' must be a list");
   return plural ? *plural : *singular;
 }
 
@@ -284,8 +388,6 @@ Geometry read_elements(const Input& in, const PlyHeader& header, Body& body, con
   constexpr std::array<const char*, 3> names = {"PLY text", "PLY binary little endian", "PLY binary big endian"};
   Geometry g;
   g.format = names[static_cast<std::size_t>(header.format)];
-  if (header.ignored_lines > 0)
-    g.warnings.push_back({"header_lines_ignored", {static_cast<double>(header.ignored_lines)}, {}});
   for (const PlyElement& element : header.elements) {
     if (element.name == "vertex") {
       read_vertices(in, element, body, g, take);
@@ -294,21 +396,25 @@ Geometry read_elements(const Input& in, const PlyHeader& header, Body& body, con
     }
   }
   if (!body.at_end()) g.warnings.push_back({"goes_on_after_elements", {}, {}});
+  body.skipped().report(g.warnings);
   return g;
 }
 
 Geometry read(const Input& in) {
   const PlyHeader header = parse_ply_header(in);
   const std::size_t text = header.format == PlyFormat::ascii ? header.body : in.bytes.size();
-  Body body(in, header, Lines(std::string_view(in.bytes).substr(text), header.body_line));
+  Body body(in, header, Lines(std::string_view(in.bytes).substr(text), header.body_line), {in, header.body});
   return read_elements(in, header, body);
 }
 
-/// Passes the points of a text file to `take`. @return whether they have normals
+/// Passes the points to `take`. @return whether they have normals
 bool take_points(const ByteStream& file, const TakePoint& take) {
-  const PlyHeader header = parse_ply_header(file.head());
-  Body body(file.head(), header, Lines(file, header.body, header.body_line));
-  return !read_elements(file.head(), header, body, &take).normals.empty();
+  const Input& in = file.head();
+  const PlyHeader header = parse_ply_header(in);
+  const bool text = header.format == PlyFormat::ascii;
+  Body body(in, header, text ? Lines(file, header.body, header.body_line) : Lines(std::string_view{}),
+            {file, header.body});
+  return !read_elements(in, header, body, &take).normals.empty();
 }
 
 }  // namespace

@@ -14,26 +14,25 @@ namespace {
 constexpr std::size_t header_bytes = 84;  // a comment of 80 bytes, then the number of triangles
 constexpr std::size_t triangle_bytes = 50;
 
-bool begins_with_solid(const std::string& bytes) {
-  std::string_view rest = without_byte_order_mark(std::string_view(bytes).substr(0, header_bytes));
-  rest.remove_prefix(std::min(rest.size(), rest.find_first_not_of(" \t\r\n")));
-  return equals_ignoring_case(rest.substr(0, 5), "solid");
-}
-
+/// The header of a binary file may begin with "solid", and text with a comment. But only in binary files does the number of triangles
+/// match the file size, and its bytes are hardly ever text.
 bool is_binary(const Input& in) {
   if (in.bytes.size() < header_bytes) return false;
-  // A binary header may begin with "solid", too. But only in binary files does the number of triangles match the file size.
   const std::uint64_t triangles = load_at<std::uint32_t>(in.bytes, 80);
-  return header_bytes + triangles * triangle_bytes == in.bytes.size() || !begins_with_solid(in.bytes) ||
-         in.bytes.find('\0') < header_bytes;
+  return header_bytes + triangles * triangle_bytes == in.bytes.size() ||
+         has_control_characters(std::string_view(in.bytes).substr(0, header_bytes));
 }
 
 std::vector<Vec3> read_binary(const Input& in) {
-  const std::uint64_t triangles = load_at<std::uint32_t>(in.bytes, 80);
-  if (header_bytes + triangles * triangle_bytes > in.bytes.size())
+  const std::uint64_t triangles = load_at<std::uint32_t>(in.bytes, 80), left = in.bytes.size() - header_bytes;
+  if (triangles == 0 && left >= triangle_bytes)
     fail_at_byte(in, 80,
-                 std::to_string(triangles) + " triangles do not fit into the " +
-                     std::to_string(in.bytes.size() - header_bytes) + " bytes that follow; the file is cut short");
+                 "the header announces 0 triangles, but " + std::to_string(left) + " bytes follow, enough for " +
+                     std::to_string(left / triangle_bytes) + "; its writer was interrupted: export the file again");
+  if (triangles > left / triangle_bytes)
+    fail_at_byte(in, 80,
+                 std::to_string(triangles) + " triangles do not fit into the " + std::to_string(left) +
+                     " bytes that follow; the file is cut short");
   std::vector<Vec3> corners;
   corners.reserve(3 * triangles);
   for (std::uint64_t t = 0; t < triangles; ++t)
@@ -45,17 +44,20 @@ std::vector<Vec3> read_binary(const Input& in) {
   return corners;
 }
 
-/// Every facet must have three vertices and an end. Otherwise a missing line would shift all later vertices.
-std::vector<Vec3> read_text(const Input& in) {
+/// Every facet must have three vertices and an end. Otherwise a missing line would shift all later vertices. Other words are skipped.
+std::vector<Vec3> read_text(const Input& in, std::vector<Warning>& warnings) {
   std::vector<Vec3> corners;
   std::vector<std::string_view> words;
   Lines lines(without_byte_order_mark(in.bytes));
   std::size_t in_facet = 0;
   bool open = false, ended = false;
-  while (lines.next()) {
+  while (lines.next_data()) {
     split_words(lines.line(), words);
-    if (words.empty()) continue;
     const auto begins_with = [&](std::string_view word) { return equals_ignoring_case(words[0], word); };
+    const auto ends = [&](std::string_view word) {  // "endsolid" or "end solid"
+      return (begins_with("end") && words.size() > 1 && equals_ignoring_case(words[1], word)) ||
+             equals_ignoring_case(words[0], "end" + std::string(word));
+    };
     if (begins_with("facet")) {
       if (open) fail_at_line(in, lines.number(), "a facet begins before the previous one has ended");
       open = true;
@@ -65,24 +67,28 @@ std::vector<Vec3> read_text(const Input& in) {
       corners.push_back({real_or_fail(in, lines.number(), words[1]), real_or_fail(in, lines.number(), words[2]),
                          real_or_fail(in, lines.number(), words[3])});
       ++in_facet;
-    } else if (begins_with("endfacet")) {
+    } else if (ends("facet")) {
       if (!open || in_facet != 3)
         fail_at_line(in, lines.number(), "the facet must have 3 vertices, found " + std::to_string(in_facet));
       open = false;
-    } else if (begins_with("endsolid")) {
+    } else if (ends("solid")) {
       ended = true;
-    } else if (!begins_with("solid") && !begins_with("outer") && !begins_with("endloop")) {
-      fail_at_line(in, lines.number(), "unknown word " + in_quotes(words[0]) + " in a text STL file");
+    } else if (!begins_with("solid") && !begins_with("outer") && !ends("loop")) {
+      if (has_control_characters(lines.line())) fail_at_line(in, lines.number(), "the file is damaged");
+      lines.skipped().add(lines.number(), lines.line());
     }
   }
-  if (open || !ended) fail_at_line(in, lines.number(), "the file ends before 'endsolid'; it is cut short");
+  if (open) fail_at_line(in, lines.number(), "the file ends within a facet; it is cut short");
+  if (corners.empty()) fail(in, "it contains no triangles" + lines.skipped().hint());
+  if (!ended) warnings.push_back({"no_end", {}, {}, "endsolid"});
+  lines.skipped().report(warnings);
   return corners;
 }
 
 Geometry read(const Input& in) {
   Geometry g;
   const bool binary = is_binary(in);
-  const std::vector<Vec3> corners = binary ? read_binary(in) : read_text(in);
+  const std::vector<Vec3> corners = binary ? read_binary(in) : read_text(in, g.warnings);
   g.format = binary ? "STL binary" : "STL text";
   check_vertex_count(in, corners.size());
   if (corners.empty()) fail(in, "it contains no triangles");

@@ -1,5 +1,6 @@
 // The legacy VTK format is not read with VTK. Its reader (9.1) returns uninitialized memory after an invalid number ("1,5"), reads
 // 1e400 as the largest double, and does not check corners. It reports no error in these cases.
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -9,6 +10,30 @@
 
 namespace ahm::io {
 namespace {
+
+/// An attribute of points or cells, and its number of values per point or cell.
+struct VtkAttribute {
+  std::string_view keyword;
+  std::size_t width;  ///< 0: the file contains the width
+};
+
+constexpr std::array<VtkAttribute, 8> attributes = {{{"vectors", 3},
+                                                     {"normals", 3},
+                                                     {"tensors", 9},
+                                                     {"tensors6", 6},
+                                                     {"global_ids", 1},
+                                                     {"pedigree_ids", 1},
+                                                     {"scalars", 0},
+                                                     {"texture_coordinates", 0}}};
+
+bool is_vtk_keyword(std::string_view word) {
+  using namespace std::string_view_literals;
+  constexpr std::array others = {"dataset"sv,   "field"sv,        "metadata"sv,   "points"sv,
+                                 "vertices"sv,  "lines"sv,        "polygons"sv,   "triangle_strips"sv,
+                                 "cell_data"sv, "lookup_table"sv, "point_data"sv, "color_scalars"sv};
+  const auto is = [&](std::string_view lower) { return equals_ignoring_case(word, lower); };
+  return std::ranges::any_of(others, is) || std::ranges::any_of(attributes, is, &VtkAttribute::keyword);
+}
 
 class VtkReader {
  public:
@@ -21,6 +46,7 @@ class VtkReader {
     pieces.push_back(std::move(piece_));
     Geometry g = join_vtk_pieces(in_, std::move(pieces));
     g.format = binary_ ? "VTK binary" : "VTK text";
+    skipped_.report(g.warnings);
     return g;
   }
 
@@ -118,32 +144,30 @@ class VtkReader {
   }
 
   void read_attribute(std::string_view keyword) {
-    struct Known {
-      std::string_view keyword;
-      std::size_t width;  ///< 0: the file contains the width
-    };
-    constexpr std::array<Known, 8> known = {{{"vectors", 3},
-                                             {"normals", 3},
-                                             {"tensors", 9},
-                                             {"tensors6", 6},
-                                             {"global_ids", 1},
-                                             {"pedigree_ids", 1},
-                                             {"scalars", 0},
-                                             {"texture_coordinates", 0}}};
+    if (!is_vtk_keyword(keyword)) return skip_unknown(keyword);
     const std::string name(word_or_fail("the name of an array"));
     if (equals_ignoring_case(keyword, "lookup_table")) return (void)colors(count("the size of a table"), 4, name);
     if (equals_ignoring_case(keyword, "color_scalars")) {
       const std::uint64_t width = count("the number of values of a color");
       return keep(colors(tuples_, width, name));
     }
-    for (const auto& [lower, width] : known) {
-      if (!equals_ignoring_case(keyword, lower)) continue;
-      if (lower == "normals" && by_point_) piece_.normals = name;
-      if (lower == "scalars") return read_scalars(name);
-      const std::uint64_t wide = width == 0 ? count("the number of texture coordinates") : width;
-      return keep(numbers(word_or_fail("the type of an array"), tuples_, wide, name));
-    }
-    fail_here(in_quotes(keyword) + " is not a VTK keyword; the file is damaged");
+    const auto& [lower, width] = *std::ranges::find_if(
+        attributes, [&](const VtkAttribute& a) { return equals_ignoring_case(keyword, a.keyword); });
+    if (lower == "normals" && by_point_) piece_.normals = name;
+    if (lower == "scalars") return read_scalars(name);
+    const std::uint64_t wide = width == 0 ? count("the number of texture coordinates") : width;
+    keep(numbers(word_or_fail("the type of an array"), tuples_, wide, name));
+  }
+
+  /// Skips an unknown statement and the lines after it, up to the next keyword. The data of binary files has no lines.
+  void skip_unknown(std::string_view keyword) {
+    if (binary_ || is_like_number(keyword) || has_control_characters(keyword))
+      fail_here(in_quotes(keyword) + " is not a VTK keyword; the file is damaged");
+    const auto begin = static_cast<std::size_t>(keyword.data() - in_.bytes.data());
+    auto number = 1 + std::count(in_.bytes.begin(), in_.bytes.begin() + static_cast<std::ptrdiff_t>(begin), '\n');
+    rest_ = std::string_view(in_.bytes).substr(begin);
+    for (std::string_view ahead = rest_; !rest_.empty() && !is_vtk_keyword(next_word(ahead)); ahead = rest_)
+      skipped_.add(number++, line());
   }
 
   /// The current line contains the type and optionally the number of components; the next line may name a color table.
@@ -267,6 +291,7 @@ class VtkReader {
   bool has_points_ = false;
   bool by_point_ = false;  ///< the following arrays have a value per point
   std::uint64_t tuples_ = 0;
+  SkippedLines skipped_;
   VtkPiece piece_;
 };
 

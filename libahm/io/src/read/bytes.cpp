@@ -133,7 +133,14 @@ ByteStream::ByteStream(const std::filesystem::path& path) : file_(std::make_shar
   check_gzip_name(*head);
   is_packed_ = is_gzip(*head);
   begin();
-  if (!is_packed_) return;
+  const auto check_text = [&] {
+    if (is_utf16(head->bytes))
+      fail(*head, "it is text in UTF-16, which is not read block by block; convert it with iconv -f UTF-16 -t UTF-8");
+  };
+  if (!is_packed_) {
+    check_text();
+    return;
+  }
   std::string bytes(longest_head, '\0');
   bytes.resize(read(bytes));
   std::string more(block, '\0');
@@ -141,6 +148,7 @@ ByteStream::ByteStream(const std::filesystem::path& path) : file_(std::make_shar
   while (const std::size_t count = read(more)) head->beyond += count;
   head->bytes = std::move(bytes);
   if (head->bytes.empty()) fail(*head, "the file is empty (0 bytes) when unpacked");
+  check_text();
   begin();
 }
 

@@ -189,8 +189,11 @@ class ColumnReader {
       if (columns_ == 0 && named_columns()) continue;
       read_row();
     }
+    skip_title();
     if (count_ == 0)
-      fail(in_, names_found_ ? "the file contains no points below the column names" : "the file contains no points");
+      fail(in_,
+           (names_line_ > 0 ? "the file contains no points below the column names" : "the file contains no points") +
+               lines_.skipped().hint());
     if (left_.value_or(0) > 0)
       fail_at_line(in_, lines_.number(),
                    "the file ends before the announced number of points; missing: " + std::to_string(*left_));
@@ -214,17 +217,35 @@ class ColumnReader {
     bool is_numbers = true;
   };
 
-  /// Moves to the next line that is not empty. // begins a comment, unless the column names follow.
+  /// Moves to the next line of data. Lines of names may be comments: // always, # if there is a name for every column.
   bool next_line() {
-    while (lines_.next_filled('#')) {
-      line_ = trimmed(lines_.line());
-      if (!line_.starts_with("//")) return true;
-      line_.remove_prefix(2);
-      if (columns_ > 0 || names_found_) continue;
-      split(line_, find_delimiter(line_, dialect_), words_);
-      if (names_position(words_)) return true;
+    while (lines_.next_filled()) {
+      line_ = trimmed(without_comment(lines_.line(), '#'));
+      if (line_.starts_with("//")) {
+        line_.remove_prefix(2);
+        if (!has_columns() && are_names(line_)) return true;
+      } else if (line_.empty()) {
+        const std::string_view comment = trimmed(lines_.line()).substr(1);
+        if (!has_columns() && are_names(comment)) keep_title(comment);
+      } else if (is_remark(line_) && !begins_with_empty_column()) {
+        lines_.skipped().add(lines_.number(), line_);
+      } else {
+        return true;
+      }
     }
     return false;
+  }
+
+  bool has_columns() const { return columns_ > 0; }
+
+  bool are_names(std::string_view line) {
+    split(line, find_delimiter(line, dialect_), words_);
+    return names_position(words_);
+  }
+
+  /// Whether a line that begins with a semicolon is a row whose first column is empty, rather than a remark.
+  bool begins_with_empty_column() const {
+    return line_.starts_with(';') && (delimiter_ == ';' || line_.find(';', 1) != std::string_view::npos);
   }
 
   /// Whether the line is a single whole number: the number of points that follow.
@@ -236,18 +257,59 @@ class ColumnReader {
     return true;
   }
 
+  /// Whether the line contains the names of the columns, or is a title.
   bool named_columns() {
     const char delimiter = find_delimiter(line_, dialect_);
     split(line_, delimiter, words_);
-    if (std::ranges::any_of(words_, is_like_number)) return false;
-    const ColumnNames names = find_columns(in_, lines_.number(), words_);
+    const auto numbers = std::ranges::count_if(words_, is_like_number);
+    const auto empty = std::ranges::count(words_, std::string_view{});
+    if (numbers > 0 || !names_position(words_)) {
+      const auto others = std::ssize(words_) - numbers - empty;
+      const bool is_point = numbers >= 3 || others < std::max<std::ptrdiff_t>(numbers, 1);
+      if (is_point || has_control_characters(line_)) return false;
+      keep_title(line_);
+      return true;
+    }
+    use_names(lines_.number(), delimiter);
+    return true;
+  }
+
+  /// Assigns the columns with the names in `words_`.
+  void use_names(std::int64_t line, char delimiter) {
+    skip_title();
+    const ColumnNames names = find_columns(in_, line, words_);
     columns_ = words_.size();
     position_ = names.position;
     for (const auto& [role, columns] : names.triples) triples_.push_back({role, columns});
     for (std::size_t column = 0; column < columns_; ++column)
       if (!is_taken(column)) others_.push_back({column, std::string(words_[column])});
     if (delimiter != ' ') delimiter_ = delimiter;
-    return names_found_ = true;
+    names_line_ = line;
+  }
+
+  /// Keeps a line before the first point until the number of columns is known: only then can it be a title or the names.
+  void keep_title(std::string_view line) {
+    skip_title();
+    title_ = line;
+    title_line_ = lines_.number();
+    title_is_comment_ = trimmed(lines_.line()).starts_with('#');
+  }
+
+  void skip_title() {
+    if (title_line_ > 0 && !title_is_comment_) lines_.skipped().add(title_line_, title_);
+    title_line_ = 0;
+  }
+
+  /// Uses the title as names, if it has as many columns as the first point. @throws IoError if it names no x, y, z
+  bool title_names_columns() {
+    if (title_line_ == 0) return false;
+    const std::size_t columns = words_.size();
+    split(title_, delimiter_, words_);
+    const bool fits = words_.size() == columns && std::ranges::none_of(words_, is_like_number);
+    const std::int64_t line = std::exchange(title_line_, fits ? 0 : title_line_);
+    if (fits) use_names(line, delimiter_);
+    split_row();
+    return fits;
   }
 
   bool is_taken(std::size_t column) const {
@@ -270,14 +332,14 @@ class ColumnReader {
   void read_row() {
     if (left_ && (*left_)-- == 0) fail_at_line(in_, lines_.number(), "more points than the announced number");
     if (delimiter_ == '\0') delimiter_ = find_delimiter(line_, dialect_);
-    split(line_, delimiter_, words_);
-    const bool open_end = words_.size() > 3 && words_.back().empty();  // the line ends with a delimiter
-    if (open_end && (columns_ == 0 || words_.size() == columns_ + 1)) words_.pop_back();
-    if (columns_ == 0) choose_columns();
+    split_row();
+    if (columns_ == 0 && !title_names_columns()) choose_columns();
     if (words_.size() != columns_)
       fail_at_line(in_, lines_.number(),
-                   "expected " + std::to_string(columns_) + " columns, as in the lines before, found " +
-                       std::to_string(words_.size()));
+                   "expected " + std::to_string(columns_) + " columns, " +
+                       (names_line_ > 0 ? "the number of names in line " + std::to_string(names_line_)
+                                        : "as in the lines before") +
+                       ", found " + std::to_string(words_.size()));
     ++count_;
     const Vec3 point = vector(position_);
     for (Triple& triple : triples_) {
@@ -292,8 +354,15 @@ class ColumnReader {
     if (intensity_) intensity_->push_back(intensity);
   }
 
-  /// Determines the meaning of unnamed columns from their number.
+  void split_row() {
+    split(line_, delimiter_, words_);
+    const bool open_end = words_.size() > 3 && words_.back().empty();  // the line ends with a delimiter
+    if (open_end && (columns_ == 0 || words_.size() == columns_ + 1)) words_.pop_back();
+  }
+
+  /// Determines the meaning of unnamed columns from their number. Columns without a meaning are kept.
   void choose_columns() {
+    skip_title();
     columns_ = words_.size();
     if (columns_ < 3)
       fail_at_line(in_, lines_.number(), "expected at least three columns, found " + std::to_string(columns_));
@@ -301,10 +370,13 @@ class ColumnReader {
     if (columns_ == 9) triples_.push_back({ColumnRole::unknown, {6, 7, 8}});
     if (dialect_.fourth_is_intensity && (columns_ == 4 || columns_ == 7)) intensity_.emplace();
     if (columns_ == 7 && intensity_) triples_.push_back({ColumnRole::colors, {4, 5, 6}});
-    if (columns_ > 3 && triples_.empty() && !intensity_) ignore_columns();
+    if (columns_ > 3 && triples_.empty() && !intensity_)
+      for (std::size_t column = 3; column < columns_; ++column) others_.push_back({column, unnamed(column)});
+    if (!others_.empty()) warn_unnamed();
   }
 
-  void ignore_columns() { g_.warnings.push_back({"columns_ignored", {static_cast<double>(columns_)}, {}}); }
+  static std::string unnamed(std::size_t column) { return "column_" + std::to_string(column + 1); }
+  void warn_unnamed() { g_.warnings.push_back({"columns_unnamed", {4, static_cast<double>(columns_)}, {}}); }
 
   Vec3 vector(const std::array<std::size_t, 3>& columns) const {
     Vec3 result;
@@ -312,13 +384,18 @@ class ColumnReader {
     return result;
   }
 
-  /// Unnamed vectors are normals, unless they can only be colors. Two vectors of the same kind are ignored.
+  /// Unnamed vectors are normals, unless they can only be colors. Two vectors of the same kind have no meaning.
   void choose_roles() {
     for (Triple& triple : triples_)
-      if (triple.role == ColumnRole::unknown) tell(triple);
+      if (triple.role == ColumnRole::unknown) choose_role(triple);
     if (triples_.size() < 2 || triples_[0].role != triples_[1].role) return;
+    for (const Triple& triple : triples_)
+      for (std::size_t c = 0; c < 3; ++c) {
+        Other& other = others_.emplace_back(Other{triple.columns[c], unnamed(triple.columns[c])});
+        for (const Vec3& value : triple.values) other.values.push_back(value[c]);
+      }
     triples_.clear();
-    ignore_columns();
+    warn_unnamed();
   }
 
   void keep() {
@@ -338,9 +415,10 @@ class ColumnReader {
         g_.warnings.push_back({"colors_unknown", {}, {}});
       }
     }
+    lines_.skipped().report(g_.warnings);
   }
 
-  void tell(Triple& triple) {
+  void choose_role(Triple& triple) {
     triple.role = triple.levels.are_levels() ? ColumnRole::colors : ColumnRole::normals;
     if (triple.role == ColumnRole::normals) return;
     const auto first = static_cast<double>(triple.columns[0] + 1);
@@ -361,7 +439,10 @@ class ColumnReader {
   std::vector<Triple> triples_;
   std::optional<std::vector<double>> intensity_;
   std::vector<Other> others_;
-  bool names_found_ = false;
+  std::int64_t names_line_ = 0;  ///< number of the line with the names of the columns; 0: none
+  std::string title_;            ///< a line before the first point that may be a title or the names of the columns
+  std::int64_t title_line_ = 0;  ///< 0: none
+  bool title_is_comment_ = false;
   std::optional<std::int64_t> left_;  ///< number of remaining points of the block; nullopt: not announced
 };
 

@@ -1,10 +1,14 @@
 #include "read/gltf_file.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <limits>
 #include <optional>
+#include <utility>
 
+#include "ahm/util/text.hpp"
 #include "little_endian.hpp"
+#include "read/bytes.hpp"
 
 namespace ahm::io {
 namespace {
@@ -153,6 +157,7 @@ const std::string& GltfFile::buffer(std::uint64_t index) {
   if (!bytes.empty()) return bytes;
   const auto found = object.find("uri");
   if (found == object.end()) {
+    if (index > 0) fail(in_, "buffer " + std::to_string(index) + " has no data");
     bytes = chunk_;
   } else if (const std::string uri = found->is_string() ? found->get<std::string>() : ""; is_data(uri)) {
     const std::size_t comma = uri.find(";base64,");
@@ -168,8 +173,13 @@ const std::string& GltfFile::buffer(std::uint64_t index) {
   return bytes;
 }
 
+/// Files written on Windows may have backslashes, or an absolute path, whose file is expected next to this one.
 std::filesystem::path GltfFile::file(const std::string& uri) const {
-  return in_.path.parent_path() / without_escapes(uri);
+  std::string path = without_escapes(uri);
+  std::ranges::replace(path, '\\', '/');
+  const bool has_drive =
+      path.size() > 2 && std::isalpha(static_cast<unsigned char>(path[0])) && path.substr(1, 2) == ":/";
+  return in_.path.parent_path() / (has_drive ? std::filesystem::path(path).filename() : std::filesystem::path(path));
 }
 
 std::vector<std::filesystem::path> GltfFile::files() const {
@@ -183,39 +193,91 @@ std::vector<std::filesystem::path> GltfFile::files() const {
   return result;
 }
 
+/// Vectors in a buffer: those of an accessor, or the indices or values of a sparse accessor.
+struct GltfFile::Elements {
+  std::string name;  ///< for messages
+  Component component;
+  std::uint64_t count = 0;
+  std::size_t width = 1;
+};
+
+/// @param place  an object with the members bufferView and byteOffset
+std::vector<double> GltfFile::read_elements(const Json& place, const Elements& e) {
+  const Json& view = item("bufferViews", whole(place, "bufferView", not_there));
+  const std::uint64_t number = whole(view, "buffer", not_there);
+  const auto extensions = view.find("extensions");
+  const bool is_packed = extensions != view.end() && extensions->contains("EXT_meshopt_compression");
+  if (is_packed && !item("buffers", number).contains("uri") && (number > 0 || chunk_.empty()))
+    fail(in_, "its meshes are compressed (meshopt), which is not supported; save it without compression");
+  const std::string& bytes = buffer(number);
+  const std::uint64_t begin = whole(view, "byteOffset", 0), length = whole(view, "byteLength", 0);
+  const std::uint64_t offset = whole(place, "byteOffset", 0);
+  const std::uint64_t element = e.component.size * e.width, given = whole(view, "byteStride", 0),
+                      stride = given == 0 ? element : given;
+  if (stride < element)
+    fail(in_, e.name + " has elements of " + std::to_string(element) + " bytes, which a byteStride of " +
+                  std::to_string(given) + " does not hold");
+  if (begin > bytes.size() || length > bytes.size() - begin || offset > length ||
+      (e.count > 0 && (length - offset < element || e.count - 1 > (length - offset - element) / stride)))
+    fail(in_, e.name + " with " + std::to_string(e.count) + " elements does not fit into its buffer");
+  std::vector<double> values(e.count * e.width);
+  for (std::uint64_t k = 0; k < e.count; ++k)
+    for (std::size_t c = 0; c < e.width; ++c)
+      values[k * e.width + c] = e.component.load(bytes, begin + offset + k * stride + c * e.component.size);
+  return values;
+}
+
+/// Replaces the values of some elements.
+void GltfFile::read_sparse(const Json& sparse, Elements e, std::vector<double>& values) {
+  const std::uint64_t count = e.count;
+  e.name += " (sparse)";
+  const auto part = [&](const char* member) -> const Json& {
+    if (!sparse.is_object() || !sparse.contains(member) || !sparse[member].is_object())
+      fail(in_, e.name + " has no " + member);
+    return sparse[member];
+  };
+  const std::optional<Component> index = find_component(whole(part("indices"), "componentType", 0));
+  if (!index) fail(in_, e.name + " has indices of an unsupported type");
+  e.count = whole(sparse, "count", 0);
+  const std::vector<double> at = read_elements(part("indices"), {e.name, *index, e.count}),
+                            changed = read_elements(part("values"), e);
+  for (std::uint64_t k = 0; k < e.count; ++k) {
+    if (!(at[k] >= 0 && at[k] < static_cast<double>(count)))
+      fail(in_, e.name + " changes element " + detail::number(at[k]) + " of " + std::to_string(count));
+    for (std::size_t c = 0; c < e.width; ++c)
+      values[static_cast<std::size_t>(at[k]) * e.width + c] = changed[k * e.width + c];
+  }
+}
+
 GltfArray GltfFile::array(std::uint64_t number) {
   const Json& accessor = item("accessors", number);
   const std::string name = "accessor " + std::to_string(number);
-  if (accessor.contains("sparse") || !accessor.contains("bufferView"))
-    fail(in_, name + " has no data of its own (sparse), which is not supported");
   const std::optional<Component> component = find_component(whole(accessor, "componentType", 0));
   const auto type = accessor.find("type");
   const std::string kind = type != accessor.end() && type->is_string() ? type->get<std::string>() : "";
   const std::size_t width = kind == "SCALAR" ? 1 : kind == "VEC2" ? 2 : kind == "VEC3" ? 3 : kind == "VEC4" ? 4 : 0;
   if (!component || width == 0) fail(in_, name + " has an unsupported type");
-
-  const Json& view = item("bufferViews", whole(accessor, "bufferView", 0));
-  const std::string& bytes = buffer(whole(view, "buffer", not_there));
-  const std::uint64_t begin = whole(view, "byteOffset", 0), length = whole(view, "byteLength", 0);
-  const std::uint64_t offset = whole(accessor, "byteOffset", 0), count = whole(accessor, "count", 0);
-  const std::uint64_t element = component->size * width, given = whole(view, "byteStride", 0),
-                      stride = given == 0 ? element : given;
-  if (stride < element)
-    fail(in_, name + " has elements of " + std::to_string(element) + " bytes, which a byteStride of " +
-                  std::to_string(given) + " does not hold");
-  if (begin > bytes.size() || length > bytes.size() - begin || offset > length ||
-      (count > 0 && (length - offset < element || count - 1 > (length - offset - element) / stride)))
-    fail(in_, name + " with " + std::to_string(count) + " elements does not fit into its buffer");
-
+  const Elements elements{name, *component, whole(accessor, "count", 0), width};
+  GltfArray result{elements.count, width, {}};
+  const bool is_sparse = accessor.contains("sparse");
+  if (accessor.contains("bufferView")) {
+    result.values = read_elements(accessor, elements);
+  } else if (!is_sparse) {
+    fail(in_, name + " has no data");
+  } else {  // zeros, which have no bytes in the file
+    if (elements.count > room_for_input() / (sizeof(double) * width)) fail_too_large(in_, name, room_for_input());
+    result.values.resize(elements.count * width);
+  }
+  if (is_sparse) read_sparse(accessor["sparse"], elements, result.values);
   const auto flag = accessor.find("normalized");
-  const bool normalized = flag != accessor.end() && flag->is_boolean() && flag->get<bool>();
-  GltfArray result{count, width, std::vector<double>(count * width)};
-  for (std::uint64_t k = 0; k < count; ++k)
-    for (std::size_t c = 0; c < width; ++c) {
-      const double value = component->load(bytes, begin + offset + k * stride + c * component->size);
-      result.values[k * width + c] = normalized ? std::max(value / component->largest, -1.0) : value;
-    }
+  if (flag != accessor.end() && flag->is_boolean() && flag->get<bool>())
+    for (double& value : result.values) value = std::max(value / component->largest, -1.0);
   return result;
+}
+
+bool GltfFile::lists(const char* list, const char* name) const {
+  const auto found = root_.find(list);
+  return found != root_.end() && found->is_array() && std::ranges::find(*found, Json(name)) != found->end();
 }
 
 namespace {

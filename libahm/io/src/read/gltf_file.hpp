@@ -37,10 +37,15 @@ class GltfFile {
   std::vector<double> numbers(const Json& object, const char* member, std::size_t count) const;
   /// The other files that contain its buffers, whether they exist or not.
   std::vector<std::filesystem::path> files() const;
-  /// The numbers of an accessor; normalized integers become numbers in [0, 1] or [-1, 1]. @throws IoError
+  /// The numbers of an accessor, also a sparse one; normalized integers become numbers in [0, 1] or [-1, 1]. @throws IoError
   GltfArray array(std::uint64_t accessor);
+  /// Whether a list of the root object ("extensionsUsed", "extensionsRequired") contains the name.
+  bool lists(const char* list, const char* name) const;
 
  private:
+  struct Elements;
+  std::vector<double> read_elements(const Json& place, const Elements& elements);
+  void read_sparse(const Json& sparse, Elements elements, std::vector<double>& values);
   const std::string& buffer(std::uint64_t index);
   std::filesystem::path file(const std::string& uri) const;
 

@@ -19,6 +19,60 @@
 #include "read/bytes.hpp"
 
 namespace ahm::io {
+namespace {
+
+unsigned byte_at(std::string_view bytes, std::size_t at) { return static_cast<unsigned char>(bytes[at]); }
+
+/// The UTF-16 unit at an even position.
+unsigned unit_at(std::string_view bytes, std::size_t at, bool big_endian) {
+  return byte_at(bytes, at + !big_endian) << 8 | byte_at(bytes, at + big_endian);
+}
+
+void append_utf8(std::string& text, unsigned character) {
+  if (character < 0x80) {
+    text += static_cast<char>(character);
+    return;
+  }
+  const int more = character < 0x800 ? 1 : character < 0x10000 ? 2 : 3;  // bytes after the first
+  text += static_cast<char>((0xF00u >> more & 0xFFu) | character >> 6 * more);
+  for (int k = more - 1; k >= 0; --k) text += static_cast<char>(0x80 | (character >> 6 * k & 0x3F));
+}
+
+/// Replaces text in UTF-16 by the same text in UTF-8, without its byte order mark. Halves of pairs become U+FFFD.
+void decode_utf16(Input& in) {
+  const std::string_view bytes = in.bytes;
+  if (bytes.size() % 2 != 0) fail_at_byte(in, bytes.size(), "the text (UTF-16) ends within a character");
+  const bool big_endian = byte_at(bytes, 0) == 0xFE;
+  std::string text;
+  text.reserve(bytes.size() / 2);
+  for (std::size_t at = 2; at < bytes.size(); at += 2) {
+    unsigned character = unit_at(bytes, at, big_endian);
+    const unsigned next = at + 2 < bytes.size() ? unit_at(bytes, at + 2, big_endian) : 0;
+    if (character >> 10 == 0x36 && next >> 10 == 0x37) {
+      character = 0x10000 + ((character & 0x3FF) << 10) + (next & 0x3FF);
+      at += 2;
+    } else if (character >> 11 == 0x1B) {
+      character = 0xFFFD;
+    }
+    append_utf8(text, character);
+  }
+  in.bytes = std::move(text);
+}
+
+/// Unpacks gzip and converts UTF-16.
+void normalize_bytes(Input& in) {
+  if (is_gzip(in)) gunzip(in);
+  if (is_utf16(in.bytes)) decode_utf16(in);
+}
+
+}  // namespace
+
+bool is_utf16(std::string_view bytes) noexcept {
+  const bool little = bytes.starts_with("\xFF\xFE"), big = bytes.starts_with("\xFE\xFF");
+  if (bytes.size() < 4 || !(little || big)) return false;
+  const unsigned first = unit_at(bytes, 2, big);  // ASCII: binary data might begin with the bytes of the mark
+  return (first >= '\t' && first <= '\r') || (first >= ' ' && first < 127);
+}
 
 Input load(const std::filesystem::path& path) {
   Input in{path, {}};
@@ -27,7 +81,7 @@ Input load(const std::filesystem::path& path) {
   if (const std::size_t done = file.read(0, in.bytes); done < in.bytes.size())
     fail_at_byte(in, done, "the file became shorter while it was read; read it again when it is complete");
   check_gzip_name(in);
-  if (is_gzip(in)) gunzip(in);
+  normalize_bytes(in);
   return in;
 }
 
@@ -47,7 +101,7 @@ Input load_unnamed(const Next& next) {
     if (done > most) fail_too_large(in, "the stream", most);
   }
   if (in.bytes.empty()) fail(in, "the stream is empty (0 bytes)");
-  if (is_gzip(in)) gunzip(in);
+  normalize_bytes(in);
   return in;
 }
 

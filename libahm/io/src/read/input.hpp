@@ -24,15 +24,18 @@ struct Input {
   std::uint64_t size() const { return bytes.size() + beyond; }
 };
 
-/// Reads a regular file, and unpacks it if it is compressed with gzip, independently of its name.
+/// Reads a regular file. Unpacks it if it is compressed with gzip, independently of its name, and converts UTF-16 to UTF-8.
 /// @throws IoError with the system's reason, or if the file is empty
 Input load(const std::filesystem::path& path);
 
-/// Reads a stream to its end, under the name "-", and unpacks it if it is compressed with gzip.
+/// Reads a stream to its end, under the name "-", and unpacks or converts it like a file.
 /// @throws IoError, also if the stream is empty
 Input load(std::istream& stream);
 /// Reads standard input to its end, like a stream. @throws IoError with the system's reason
 Input load_standard_input();
+
+/// Whether the bytes are text in UTF-16, of either byte order, after a byte order mark.
+bool is_utf16(std::string_view bytes) noexcept;
 
 /// Checks that a file with the extension .gz is compressed with gzip. @throws IoError
 void check_gzip_name(const Input& in);

@@ -167,7 +167,8 @@ RawHeader read_lines(const Input& in, PcdHeader& header) {
     const std::size_t end = in.bytes.find('\n', position);
     if (end == std::string::npos)
       fail_at_line(in, line, "the PCD header has no 'DATA' line; the file is cut short or not a PCD file");
-    split_words(std::string_view(in.bytes).substr(position, end - position), words);
+    const std::string_view text = std::string_view(in.bytes).substr(position, end - position);
+    split_words(text, words);
     position = end + 1;
     if (words.empty() || words[0].starts_with('#') || words[0] == "VERSION") continue;
     if (words[0] == "FIELDS" || words[0] == "COLUMNS") {
@@ -193,7 +194,9 @@ RawHeader read_lines(const Input& in, PcdHeader& header) {
       header.body_line = line + 1;
       return raw;
     } else {
-      fail_at_line(in, line, "unexpected " + in_quotes(words[0]) + " in the PCD header");
+      if (words[0] == "DATA" || has_control_characters(text))
+        fail_at_line(in, line, "unexpected " + in_quotes(words[0]) + " in the PCD header");
+      header.skipped.add(line, text);
     }
   }
 }
@@ -215,9 +218,9 @@ void set_fields(const Input& in, const RawHeader& raw, PcdHeader& header) {
                    "field '" + field.name + "' has no known type: TYPE " + std::string(raw.types[k]) + " SIZE " +
                        std::to_string(field.size));
     }
-    if (field.count == 0 || field.count > largest_point) {
+    if (field.count > largest_point)
       fail_at_line(in, raw.fields_line, "field '" + field.name + "' has COUNT " + std::to_string(field.count));
-    }
+    if (field.count == 0) continue;
     header.point_size += field.size * field.count;
     header.fields.push_back(std::move(field));
   }
@@ -259,26 +262,47 @@ void set_points(const Input& in, const RawHeader& raw, PcdHeader& header) {
 
 }  // namespace
 
+namespace {
+
+/// Drops padding fields that compressed data does not contain. PCL's writer leaves them out, others do not: the uncompressed size
+/// that precedes the data decides.
+void drop_padding(const Input& in, PcdHeader& header) {
+  const auto is_padding = [](const PcdField& field) { return field.name == "_"; };
+  std::uint64_t padding = 0;
+  for (const PcdField& field : header.fields)
+    if (is_padding(field)) padding += field.size * field.count;
+  std::array<std::uint32_t, 2> sizes{};  // compressed, uncompressed
+  if (padding == 0 || in.bytes.size() - header.body < sizeof sizes) return;
+  std::memcpy(sizes.data(), in.bytes.data() + header.body, sizeof sizes);
+  if (sizes[1] != header.points * (header.point_size - padding)) return;
+  std::erase_if(header.fields, is_padding);
+  header.point_size -= padding;
+}
+
+}  // namespace
+
 PcdHeader parse_pcd_header(const Input& in) {
   PcdHeader header;
   const RawHeader raw = read_lines(in, header);
   set_fields(in, raw, header);
   check_positions(in, raw, header);
   set_points(in, raw, header);
+  if (header.data == PcdData::compressed) drop_padding(in, header);
   return header;
 }
 
 void check_pcd_size(const Input& in, const PcdHeader& header) {
   const std::uint64_t plain = header.points * header.point_size;  // no overflow: less than 2^31 * 2^20
-  if (plain > in.size() - header.body) fail_size(in, header, plain);
+  const std::uint64_t left = in.size() - header.body;
+  if (plain > left) fail_size(in, header, plain);
+  if (!header.skipped.empty() && plain != left)
+    fail_at_byte(in, header.body,
+                 "the points need " + std::to_string(plain) + " bytes, but " + std::to_string(left) +
+                     " follow the header, which may be damaged" + header.skipped.hint());
 }
 
 std::array<std::uint32_t, 2> pcd_sizes(const Input& in, const PcdHeader& header) {
   const std::uint64_t plain = header.points * header.point_size;
-  if (std::ranges::find(header.fields, "_", &PcdField::name) != header.fields.end()) {
-    // PCL's writer omits padding in compressed data, and its reader assumes that every writer does.
-    fail_at_byte(in, header.body, "compressed data with padding fields '_' is ambiguous; save it uncompressed");
-  }
   std::array<std::uint32_t, 2> sizes{};  // compressed, uncompressed
   const std::uint64_t left = in.size() - header.body;
   if (in.bytes.size() - header.body < sizeof sizes) fail_size(in, header, sizeof sizes);
@@ -307,7 +331,7 @@ void read_pcd_text(const Input& in, const PcdHeader& header, Lines& lines,
   for (const PcdField& field : header.fields) per_point += field.count;
   std::uint64_t point = 0;
   Words words;
-  while (lines.next_filled()) {
+  while (lines.next_data('#')) {
     if (point++ == header.points)
       fail_at_line(in, lines.number(), "the file has more lines than points (" + std::to_string(header.points) + ")");
     split_words(lines.line(), words);
@@ -329,10 +353,12 @@ CheckedPcd check_pcd(const Input& in) {
   const PcdHeader& header = checked.header;
   if (header.data == PcdData::ascii) {
     Lines lines(std::string_view(in.bytes).substr(header.body), header.body_line);
+    lines.skipped() = header.skipped;
     read_pcd_text(in, header, lines, [&](const Words& words) {
       for (std::string_view word : words) (checked.text += word) += ' ';
       checked.text.back() = '\n';
     });
+    checked.header.skipped = lines.skipped();
   } else if (header.data == PcdData::binary) {
     check_pcd_size(in, header);
   } else {
@@ -344,7 +370,8 @@ CheckedPcd check_pcd(const Input& in) {
 std::string full_header(const PcdHeader& header) {
   std::string fields = "FIELDS", sizes = "SIZE", types = "TYPE", counts = "COUNT";
   for (const PcdField& field : header.fields) {
-    fields += " " + field.name;
+    // In compressed data, PCL expects no padding: a name makes it an ordinary field.
+    fields += field.name == "_" && header.data == PcdData::compressed ? " padding" : " " + field.name;
     sizes += " " + std::to_string(field.size);
     types += std::string(" ") + field.type;
     counts += " " + std::to_string(field.count);

@@ -34,11 +34,14 @@ struct PcdHeader {
   PcdData data = PcdData::ascii;
   std::size_t body = 0;        ///< position of the first byte after the header
   std::int64_t body_line = 0;  ///< number of the first line after the header
+  SkippedLines skipped;        ///< lines of the header, and of text, without a meaning
 };
 
-/// Reads the header, and checks that fields and counts are consistent. @throws IoError with the line
+/// Reads the header, and checks that fields and counts are consistent. Fields of no values (COUNT 0) are left out, and so is padding
+/// that compressed data does not contain. @throws IoError with the line
 PcdHeader parse_pcd_header(const Input& in);
-/// Checks that a file of uncompressed binary points is long enough for the number of points. @throws IoError with the byte
+/// Checks that a file of uncompressed binary points is long enough for the number of points; if the header has unknown lines, exactly
+/// as long, because these could be damaged fields. @throws IoError with the byte
 void check_pcd_size(const Input& in, const PcdHeader& header);
 
 /// Reads the points of a text file, and checks that each line has as many numbers as the fields have values.

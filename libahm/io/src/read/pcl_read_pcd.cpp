@@ -115,7 +115,8 @@ PCLPointCloud2 read_with_pcl(const Input& in, const PcdHeader& header, std::stri
 /// Checks that the cloud from PCL matches the header.
 void check_result(const Input& in, const PcdHeader& header, const PCLPointCloud2& cloud) {
   const std::uint64_t points = std::uint64_t{cloud.width} * cloud.height;
-  bool inside = points == header.points && cloud.data.size() >= points * cloud.point_step;
+  bool inside = points == header.points && cloud.data.size() >= points * cloud.point_step &&
+                cloud.fields.size() == header.fields.size();
   for (const PCLPointField& field : cloud.fields) {
     const std::uint64_t size = static_cast<std::uint64_t>(std::max(0, pcl::getFieldSize(field.datatype)));
     inside = inside && size > 0 && field.offset + size * field.count <= cloud.point_step;
@@ -138,7 +139,7 @@ void read_vectors(const Input& in, const PCLPointCloud2& cloud, std::array<const
 }
 
 bool has_a_role(const PCLPointField& field) {
-  constexpr std::string_view roles[] = {"x", "y", "z", "normal_x", "normal_y", "normal_z", "rgb", "rgba", "_"};
+  constexpr std::string_view roles[] = {"x", "y", "z", "normal_x", "normal_y", "normal_z", "rgb", "rgba"};
   return std::ranges::find(roles, field.name) != std::end(roles);
 }
 
@@ -149,11 +150,13 @@ bool exact(const PCLPointField& field, std::span<const double> values) {
   return !wide || std::ranges::all_of(values, [](double x) { return std::abs(x) < largest; });
 }
 
-void read_properties(const Input& in, const PCLPointCloud2& cloud, Geometry& g) {
+/// @param header  its fields are those of the cloud, except for the names of padding
+void read_properties(const Input& in, const PcdHeader& header, const PCLPointCloud2& cloud, Geometry& g) {
   constexpr std::size_t most_columns = 4096;  // limits the time of the search for equal names
   std::size_t columns = 0;
-  for (const PCLPointField& field : cloud.fields) {
-    if (has_a_role(field)) continue;
+  for (std::size_t f = 0; f < cloud.fields.size(); ++f) {
+    const PCLPointField& field = cloud.fields[f];
+    if (has_a_role(field) || header.fields[f].name == "_") continue;
     PCLPointField value = field;
     for (std::uint32_t c = 0; c < field.count; ++c, value.offset += pcl::getFieldSize(field.datatype)) {
       const std::string name = field.count == 1 ? field.name : field.name + "_" + std::to_string(c);
@@ -202,7 +205,8 @@ Geometry read_pcd(const Input& in) {
   read_vectors(in, cloud, {"x", "y", "z"}, g.points);
   read_vectors(in, cloud, {"normal_x", "normal_y", "normal_z"}, g.normals);
   read_colors(cloud, g);
-  read_properties(in, cloud, g);
+  read_properties(in, header, cloud, g);
+  header.skipped.report(g.warnings);
   return g;
 }
 

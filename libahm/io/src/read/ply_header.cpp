@@ -12,7 +12,7 @@ namespace {
 using namespace std::string_view_literals;
 
 PlyType parse_type(const Input& in, std::int64_t line, std::string_view word) {
-  static constexpr std::array<std::pair<std::string_view, PlyType>, 16> names = {{
+  static constexpr std::array<std::pair<std::string_view, PlyType>, 18> names = {{
       {"char"sv, PlyType::int8},
       {"int8"sv, PlyType::int8},
       {"uchar"sv, PlyType::uint8},
@@ -25,6 +25,8 @@ PlyType parse_type(const Input& in, std::int64_t line, std::string_view word) {
       {"int32"sv, PlyType::int32},
       {"uint"sv, PlyType::uint32},
       {"uint32"sv, PlyType::uint32},
+      {"int64"sv, PlyType::int64},
+      {"uint64"sv, PlyType::uint64},
       {"float"sv, PlyType::float32},
       {"float32"sv, PlyType::float32},
       {"double"sv, PlyType::float64},
@@ -54,9 +56,7 @@ PlyProperty parse_property(const Input& in, std::int64_t line, const std::vector
   if (words.size() == 3) return {std::string(words[2]), parse_type(in, line, words[1]), std::nullopt};
   if (words.size() != 5 || words[1] != "list")
     fail_at_line(in, line, "expected 'property [list <type>] <type> <name>'");
-  const PlyType count_type = parse_type(in, line, words[2]);
-  if (!is_whole(count_type)) fail_at_line(in, line, "the count of a list cannot be of type " + in_quotes(words[2]));
-  return {std::string(words[4]), parse_type(in, line, words[3]), count_type};
+  return {std::string(words[4]), parse_type(in, line, words[3]), parse_type(in, line, words[2])};
 }
 
 /// Reads the lines of the header. The end of the first line determines whether lines end with a lone "\r". Bytes after "end_header"
@@ -144,6 +144,8 @@ std::size_t size_of(PlyType type) noexcept {
     case PlyType::uint32:
     case PlyType::float32:
       return 4;
+    case PlyType::int64:
+    case PlyType::uint64:
     case PlyType::float64:
       return 8;
   }
@@ -179,7 +181,8 @@ PlyHeader parse_ply_header(const Input& in) {
   std::size_t properties = 0;
   std::vector<std::string_view> words;
   for (;;) {
-    split_words(lines.next(), words);
+    const std::string_view line = lines.next();
+    split_words(line, words);
     if (words.empty() || words[0] == "comment" || words[0] == "obj_info") continue;
     if (words[0] == "end_header") break;
     if (++properties > most_properties) fail_at_line(in, lines.number, "more than 4096 elements and properties");
@@ -191,8 +194,8 @@ PlyHeader parse_ply_header(const Input& in) {
     } else if (words[0] == "property") {
       if (header.elements.empty()) fail_at_line(in, lines.number, "a property before the first 'element' line");
       header.elements.back().properties.push_back(parse_property(in, lines.number, words));
-    } else if (header.elements.empty() || (has_format && header.format == PlyFormat::ascii)) {
-      ++header.ignored_lines;  // a comment without its keyword; a misspelled property causes an error later
+    } else if (header.elements.empty() || (has_format && header.format == PlyFormat::ascii) || is_remark(line)) {
+      header.skipped.add(lines.number, line);  // in text, a misspelled property causes an error later
     } else {
       fail_at_line(in, lines.number, "unexpected " + in_quotes(words[0]) + " in the PLY header");
     }
@@ -229,21 +232,18 @@ void find_coordinates(const Input& in, const PlyElement& vertex, PointRecords& r
 
 std::optional<PointRecords> ply_records(const Input& in) {
   const PlyHeader header = parse_ply_header(in);
-  PointRecords records{.begin = header.body};
-  records.is_swapped = is_swapped(header.format);
+  PointRecords records{.begin = header.body, .is_swapped = is_swapped(header.format)};
   for (const PlyElement& element : header.elements)
     if ((element.name == "face" || element.name == "tristrips") && element.count > 0)
       throw IoError("no_cloud", "cannot read " + quoted_path(in.path) + ": it has faces",
                     "only clouds of points can be streamed");
   if (header.format == PlyFormat::ascii) return std::nullopt;
   for (const PlyElement& element : header.elements) {
+    if (element.has_list()) return std::nullopt;
     if (element.name == "vertex") {
-      if (element.has_list()) fail(in, "its vertices have lists; such points cannot be streamed");
       find_coordinates(in, element, records);
-      return records;
+      return std::ranges::all_of(records.type, is_exact) ? std::optional(records) : std::nullopt;
     }
-    if (element.has_list())
-      fail(in, "lists of element '" + element.name + "' come before its vertices; such points cannot be streamed");
     records.begin += element.count * element.fixed_size();
   }
   fail(in, "it has no element 'vertex'");

@@ -13,15 +13,20 @@
 #include <vector>
 
 #include "read/input.hpp"
+#include "read/skipped_lines.hpp"
 
 namespace ahm::io {
 
 enum class PlyFormat { ascii, little_endian, big_endian };
-enum class PlyType { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
+enum class PlyType { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64 };
 
 /// Bytes of one value.
 std::size_t size_of(PlyType type) noexcept;
 bool is_whole(PlyType type) noexcept;
+/// Whether doubles represent all values of the type exactly; integers of 64 bits may be too large.
+inline bool is_exact(PlyType type) noexcept { return type != PlyType::int64 && type != PlyType::uint64; }
+/// Doubles represent all smaller whole numbers exactly.
+constexpr double least_inexact = 9007199254740992;  // 2^53
 
 struct PlyProperty {
   std::string name;
@@ -45,9 +50,9 @@ struct PlyElement {
 struct PlyHeader {
   PlyFormat format = PlyFormat::ascii;
   std::vector<PlyElement> elements;
-  std::size_t ignored_lines = 0;  ///< lines without a meaning, in text files or before the first element
-  std::size_t body = 0;           ///< position of the first byte after the header
-  std::int64_t body_line = 0;     ///< number of the first line after the header
+  SkippedLines skipped;        ///< lines without a meaning, where they cannot be damaged properties of binary data
+  std::size_t body = 0;        ///< position of the first byte after the header
+  std::int64_t body_line = 0;  ///< number of the first line after the header
 };
 
 /// @throws IoError with the line
@@ -80,6 +85,10 @@ inline double load_value(PlyType type, const char* bytes, bool swap) noexcept {
       return load_as<std::int32_t>(bytes, swap);
     case PlyType::uint32:
       return load_as<std::uint32_t>(bytes, swap);
+    case PlyType::int64:
+      return load_as<std::int64_t>(bytes, swap);
+    case PlyType::uint64:
+      return load_as<std::uint64_t>(bytes, swap);
     case PlyType::float32:
       return load_as<float>(bytes, swap);
     case PlyType::float64:

@@ -28,7 +28,8 @@ struct PointRecords {
 /// Receives points one at a time.
 using TakePoint = std::function<void(const Vec3&)>;
 
-/// The layout of the points, from the beginning of a PLY, LAS or PCD file; nullopt for text and compressed data. @throws IoError
+/// The layout of the points, from the beginning of a PLY, LAS or PCD file; nullopt for text, compressed data, points of unequal sizes,
+/// and coordinates that doubles may not represent. @throws IoError
 std::optional<PointRecords> ply_records(const Input& in);
 std::optional<PointRecords> las_records(const Input& in);
 std::optional<PointRecords> pcd_records(const Input& in);

@@ -23,8 +23,8 @@ constexpr Refused refused[] = {
     {".pvtp", "files in several parts are not supported; save it as .vtp in ParaView"},
     {".vtm", "files in several parts are not supported; save its surface as .vtp in ParaView"},
     {".jsonl", "JSON lines can be written, but not read; use .csv"},
-    {".laz", "LAZ (compressed LAS) is not supported; convert it to .las with laszip, las2las or pdal translate"},
-    {".e57", "E57 is not supported; convert it to .ply, .las or .pts with CloudCompare or pdal translate"},
+    {".laz", "LAZ (compressed LAS) is not supported; convert it with 'pdal translate FILE.laz FILE.las' or laszip"},
+    {".e57", "E57 is not supported; convert it with 'pdal translate FILE.e57 FILE.las' or CloudCompare"},
 };
 
 [[noreturn]] void fail(const std::filesystem::path& path, const std::string& what) {

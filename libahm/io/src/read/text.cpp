@@ -17,13 +17,6 @@ std::string_view without_plus(std::string_view word) noexcept {
   return plus ? word.substr(1) : word;
 }
 
-/// Position of the comment character at the beginning of a word. Inside a word, as in "1.#INF", it does not start a comment.
-std::size_t find_comment(std::string_view line, char comment) noexcept {
-  std::size_t at = line.find(comment);
-  while (at != std::string_view::npos && at > 0 && !is_blank(line[at - 1])) at = line.find(comment, at + 1);
-  return at;
-}
-
 /// Whether a number is out of range because it is too small: a short mantissa with a negative exponent.
 bool is_underflow(std::string_view word) noexcept {
   const std::size_t exponent = word.find_first_of("eE");
@@ -88,10 +81,24 @@ bool Lines::next() {
 
 bool Lines::next_filled(std::optional<char> comment) {
   while (next()) {
-    if (comment) line_ = line_.substr(0, find_comment(line_, *comment));
+    if (comment) line_ = without_comment(line_, *comment);
     if (!std::ranges::all_of(line_, is_blank)) return true;
   }
   return false;
+}
+
+bool Lines::next_data(std::optional<char> comment) {
+  while (next_filled(comment)) {
+    if (!is_remark(line_)) return true;
+    skipped_.add(number_, line_);
+  }
+  return false;
+}
+
+std::string_view without_comment(std::string_view line, char comment) noexcept {
+  std::size_t at = line.find(comment);  // inside a word, as in "1.#INF", it begins no comment
+  while (at != std::string_view::npos && at > 0 && !is_blank(line[at - 1])) at = line.find(comment, at + 1);
+  return line.substr(0, at);
 }
 
 std::string_view next_word(std::string_view& rest) noexcept {

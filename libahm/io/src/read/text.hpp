@@ -11,6 +11,7 @@
 
 #include "read/bytes.hpp"
 #include "read/input.hpp"
+#include "read/skipped_lines.hpp"
 
 namespace ahm::io {
 
@@ -26,6 +27,8 @@ class Lines {
   /// Moves to the next line that contains a word, and cuts off its comment.
   /// @param comment  character at the beginning of a word that starts a comment; nullopt: no comments
   bool next_filled(std::optional<char> comment = {});
+  /// Moves to the next line of data: as `next_filled`, but skips comments of unknown dialects, too (`is_remark`).
+  bool next_data(std::optional<char> comment = {});
 
   /// The current line without its end; valid until the next line is read.
   std::string_view line() const noexcept { return line_; }
@@ -33,6 +36,8 @@ class Lines {
   std::int64_t number() const noexcept { return number_; }
   /// Position in the text after the current line and its end.
   std::size_t position() const noexcept { return position_; }
+  /// Lines that `next_data` skipped as unknown; readers add others.
+  SkippedLines& skipped() noexcept { return skipped_; }
 
  private:
   bool read_on();
@@ -44,8 +49,11 @@ class Lines {
   std::size_t position_ = 0;
   std::int64_t number_;
   char end_ = '\n';
+  SkippedLines skipped_;
 };
 
+/// The line without its comment, which begins with `comment` at the beginning of a word.
+std::string_view without_comment(std::string_view line, char comment) noexcept;
 /// Removes the next word from the front of `rest` and returns it; empty at the end. Blanks and tabs separate words.
 std::string_view next_word(std::string_view& rest) noexcept;
 /// Splits a line into words. Reuses the memory of `words`.

@@ -43,7 +43,7 @@ class PolygonMesh {
   /// @param turned         per face, 1 if the majority orientation of its component is computed as if the face were turned over
   ///                       (`face_parts`); empty: no face
   /// @throws InvalidGeometry (no faces, index out of range, fewer than three corners, vertex repeated in a face,
-  ///         duplicate face, coordinate not finite, non-manifold edge or vertex); messages list the first ten and the count
+  ///         duplicate face, vertex of a face not finite, non-manifold edge or vertex); messages list the first ten and the count
   static PolygonMesh from_faces(std::span<const Vec3> positions, std::span<const Offset> face_begin,
                                 std::span<const Index> face_vertices, NonManifold non_manifold = NonManifold::error,
                                 std::span<const std::uint8_t> turned = {});

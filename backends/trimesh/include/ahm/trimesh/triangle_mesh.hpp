@@ -38,8 +38,8 @@ class TriangleMesh {
   /// A mesh in space.
   /// @param turned  per face, 1 if the majority orientation of its component is computed as if the face were turned over
   ///                (`face_parts`); empty: no face
-  /// @throws InvalidGeometry (no faces, index out of range, vertex repeated in a face, duplicate face, coordinate not
-  ///         finite, non-manifold edge or vertex); messages list the first ten elements and the count
+  /// @throws InvalidGeometry (no faces, index out of range, vertex repeated in a face, duplicate face, vertex of a
+  ///         face not finite, non-manifold edge or vertex); messages list the first ten elements and the count
   static TriangleMesh from_positions(std::span<const Vec3> positions, std::span<const Triangle> faces,
                                      NonManifold non_manifold = NonManifold::error,
                                      std::span<const std::uint8_t> turned = {});

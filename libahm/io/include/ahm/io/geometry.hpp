@@ -45,12 +45,15 @@ struct Geometry {
   std::string format;                      ///< for messages, e.g. "PLY binary little endian"
   /// Data that was ignored or interpreted. Identifiers, with their values and names in parentheses:
   /// - goes_on_after_faces, goes_on_after_elements: the rest of the file is ignored
-  /// - element_ignored (name of the element), header_lines_ignored (number of lines)
-  /// - statements_ignored (number of statements; their first keywords)
+  /// - lines_skipped (number of lines that are not understood, number of the first one; its text in quotes)
+  /// - no_end (name of the missing end): the file may be cut short
+  /// - element_ignored (name of the element), list_ignored (name of a list of the vertices)
+  /// - bytes_ignored (number of bytes per point without a description)
   /// - colors_unknown: colors are neither fractions of 1 nor whole levels; colors_not_packed
   /// - normals_not_by_vertex; vertex_extras: numbers after x, y, z are ignored
   /// - columns_as_colors (numbers of the first and the last column)
-  /// - columns_ignored (number of the last column; the first is 4), column_ignored (its name): it contains other data than numbers
+  /// - columns_unnamed (numbers of the first and the last column): properties column_4, column_5, ...
+  /// - column_ignored (its name): it contains other data than numbers
   /// - lines_ignored (number of sets of lines)
   std::vector<Warning> warnings;
 

@@ -18,14 +18,13 @@
 namespace ahm::io {
 
 /// Reads the points of a PLY, PCD, LAS, XYZ, TXT, ASC, CSV or PTS file, optionally compressed with gzip. The points and their order
-/// are the same as with `read`. The constructor converts text and compressed files to an unnamed temporary file of 24 bytes per
+/// are the same as with `read`. The constructor converts text, compressed files and points with lists to an unnamed temporary file of 24 bytes per
 /// point, which disappears with this object or the process.
 class PointStream {
  public:
   /// @param scratch  folder for the temporary file
   /// @throws IoError as `read`, when the disk is full, or when the file cannot be streamed:
-  /// - it has faces or another format (fault "no_cloud")
-  /// - binary PLY: the vertices have list properties
+  /// - it has faces or another format (fault "no_cloud"), or is text in UTF-16
   /// - PCD: coordinates are integers of 8 bytes, or numbers in text do not fit their type
   explicit PointStream(const std::filesystem::path& path,
                        const std::filesystem::path& scratch = std::filesystem::temp_directory_path());

@@ -21,17 +21,20 @@ namespace ahm::io {
 /// selects the format. Files compressed with gzip are unpacked first; the extension before .gz selects their format.
 ///
 /// Numbers in text are independent of the locale and have double precision. Vertices and polygons keep the file's order. A file
-/// that is truncated, has wrong counts, or contains an invalid number is rejected as a whole.
+/// that is truncated, has wrong counts, or contains an invalid number is rejected as a whole. Lines of text files that are not
+/// understood and not needed are skipped with one warning. Text may be UTF-8 or, after a byte order mark, UTF-16.
 /// - PLY: text or binary of either byte order; normals nx ny nz and colors red green blue if present; other scalar properties of
-///   the vertices become properties.
+///   the vertices become properties, lists of the vertices are ignored with a warning.
 /// - PLY triangle strips become triangles; other elements are ignored with a warning.
 /// - OFF: text, polygons; the normals of NOFF, the colors of COFF.
 /// - OBJ: polygons, relative indices; `vn` only if normals and vertices have the same numbers; colors after x y z.
 /// - PCD: text, binary or compressed, through PCL (build option AHM_WITH_PCL). Other fields become properties; fields of several
 ///   values get the suffixes _0, _1, .... Width, height and viewpoint become the acquisition.
-/// - LAS: versions 1.0 to 1.4, point formats 0 to 10, not compressed; intensity and classification become properties.
+/// - LAS: versions 1.0 to 1.4, point formats 0 to 10, not compressed; intensity, classification and extra bytes that the file
+///   describes become properties.
 /// - XYZ, TXT, ASC, PTS, CSV: columns separated by blanks, commas, semicolons (CSV: or tabs). Named columns: x, y, z (nx, ny, nz;
-///   r, g, b). Unnamed: 3 columns, 6 with normals (or colors, if all are whole numbers up to 255), 9 with both.
+///   r, g, b). Unnamed: 3 columns, 6 with normals (or colors, if all are whole numbers up to 255), 9 with both. Other columns of
+///   numbers become properties, without a name column_4, column_5, ....
 /// - PTS: the fourth of 4 or 7 columns is the property intensity; the last three of 7 are colors.
 /// - GLB, GLTF: the triangles and points of the scene, transformed by their nodes; triangles are welded at equal positions.
 /// - VTP, VTK: polygonal data; point arrays become normals, colors or properties; strips become triangles (VTP: build option

@@ -59,8 +59,10 @@ std::vector<std::pair<Index, Index>> find_duplicates(Index vertices, const FaceL
 /// @throws InvalidGeometry, InvalidArgument (turned: another number of faces)
 Gluing glue(Index vertices, const FaceList& faces, NonManifold non_manifold, std::span<const std::uint8_t> turned = {});
 
+/// Checks the positions that faces use; others may be NaN or infinite.
+/// @param corners  vertices of the faces; those out of range are ignored
 /// @throws InvalidGeometry (more than 2^30 positions, a coordinate that is not finite)
-void check_positions(std::span<const Vec3> positions);
+void check_positions(std::span<const Vec3> positions, std::span<const Index> corners);
 
 /// Positions of the vertices of a mesh, scaled to order one.
 struct NormalizedPositions {
