@@ -136,7 +136,7 @@ TEST_F(Trace, ClosesAroundACubeAndEndsAtABoundary) {
 
 // The line of length L at angle a ends where the map of the source has the coordinates L (cos a, sin a).
 TEST_F(Trace, TakesAnAngleFromTheUAxis) {
-  for (const std::string& source :
+  for (const std::string source :
        {"cube.off --source face:2:.2,.3,.3,.2", "cube.off --source face:6:.25,.25,.25,.25", "plane.xyz --source 0"})
     for (const double degrees : {0.0, 30.0, -117.5}) {
       const double a = degrees * std::numbers::pi / 180;

@@ -82,5 +82,21 @@ TEST(MapQuality, RefusesOtherGraphsAndCurvesInSpace) {
   EXPECT_THROW(map_quality(space.graph, space.map(curve)), InvalidArgument);
 }
 
+TEST(ReliableDistance, IsTheFarthestWithAtMostOneOfTwentyBelow) {
+  std::vector<double> distances, quality;
+  for (int i = 0; i < 100; ++i) distances.push_back(i), quality.push_back(1);
+  EXPECT_EQ(reliable_distance(distances, quality), 99);
+  for (int i = 60; i < 100; ++i) quality[i] = 0.1;
+  EXPECT_EQ(reliable_distance(distances, quality), 62) << "3 of 63 are below, 4 of 64 are too many";
+  quality[80] = distances[81] = NAN;  // not mapped
+  EXPECT_EQ(reliable_distance(distances, quality), 62);
+  std::ranges::fill(std::span(quality).first(2), 0.1);
+  EXPECT_EQ(reliable_distance(distances, quality), 60) << "3 of 61";
+  std::ranges::fill(quality, 0.1);
+  EXPECT_EQ(reliable_distance(distances, quality), std::nullopt);
+  EXPECT_EQ(reliable_distance(std::vector{0.0}, std::vector{1.0}), 0) << "fewer than 20 entries: all count";
+  EXPECT_THROW(reliable_distance(distances, std::vector{1.0}), InvalidArgument);
+}
+
 }  // namespace
 }  // namespace ahm::test

@@ -159,9 +159,9 @@ TEST(Wavefront, FromACrowdedCurveIsThatFromItsNearestSample) {
 
 TEST(Wavefront, IsTheSameWithStoredStars) {
   const CsrGraph graph(sphere_graph(600));
-  Wavefront stored_stars(graph, Wavefront::one_rings(graph)), looked_up(graph);
-  for (Wavefront* front : {&stored_stars, &looked_up}) front->add(source_at(7)), front->run();
-  for (Index i = 0; i < graph.size(); ++i) ASSERT_EQ(stored_stars.distance(Vertex(i)), looked_up.distance(Vertex(i)));
+  Wavefront stored(graph, Wavefront::one_rings(graph)), looked_up(graph);
+  for (Wavefront* front : {&stored, &looked_up}) front->add(source_at(7)), front->run();
+  for (Index i = 0; i < graph.size(); ++i) ASSERT_EQ(stored.distance(Vertex(i)), looked_up.distance(Vertex(i)));
 }
 
 TEST(Wavefront, StopsAtTheRadiusAndAtTheComponent) {
@@ -193,6 +193,14 @@ TEST(Wavefront, RefusesSourcesThatDoNotFit) {
   Wavefront front(graph);
   EXPECT_THROW(front.add(source_at(15)), InvalidArgument);
   EXPECT_THROW(front.add(Source(3)), InvalidArgument);
+}
+
+TEST(OneRings, AreComputedOncePerGraph) {
+  const CsrGraph flat(planar_triangulation(12).data), round(sphere_graph(300)), copy(flat);
+  EXPECT_EQ(Wavefront::one_rings(flat), Wavefront::one_rings(flat, 2));
+  EXPECT_EQ(Wavefront::one_rings(flat, 1, false), Wavefront::one_rings(flat, 1, false));
+  EXPECT_NE(Wavefront::one_rings(round, 1, false), Wavefront::one_rings(round, 1, true));
+  EXPECT_NE(Wavefront::one_rings(copy), Wavefront::one_rings(flat));
 }
 
 /// Focusing of a front at this distance, on a surface of constant curvature.
