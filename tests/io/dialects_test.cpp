@@ -7,7 +7,7 @@
 #include "files.hpp"
 #include "streamed.hpp"
 
-namespace ahm::io::test {
+namespace ahm::io::test::dialects {
 namespace {
 
 /// A file and what `read` finds in it.
@@ -439,6 +439,12 @@ TEST_F(Dialects, Las) {
 
 // ---- VTK ----
 
+/// The text with the line ends of old Macintosh systems.
+std::string with_returns(std::string text) {
+  std::ranges::replace(text, '\n', '\r');
+  return text;
+}
+
 TEST_F(Dialects, Vtk) {
   const std::string head = "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\n";
   const std::string points = "POINTS 4 float\n0 0 0 1 0 0 0 1 0 1 1 0\n";
@@ -458,6 +464,7 @@ TEST_F(Dialects, Vtk) {
        strip,
        {},
        {"lines_skipped 4 5 '$ by hand'"}},
+      {"a.vtk", with_returns(head + points + "TRIANGLE_STRIPS 1 5\n4 0 1 2 3\n"), square, strip},
       {"a.vtk", head + points + "7 8\n", {}, {}, {}, {}, "'7' is not a VTK keyword"},
       {"a.vtk", binary + "\nEDGE_FLAGS", {}, {}, {}, {}, "'EDGE_FLAGS'"},
   });
@@ -601,4 +608,4 @@ TEST_F(Dialects, StreamsTheSamePoints) {
 }
 
 }  // namespace
-}  // namespace ahm::io::test
+}  // namespace ahm::io::test::dialects

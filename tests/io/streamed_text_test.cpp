@@ -80,7 +80,7 @@ TEST_F(StreamedText, OfPlyIsWhatIsRead) {
     for (std::size_t length = text.find("end_header") + 5; length < text.size(); ++length)
       expect_streamed_as_read(make("a.ply", text.substr(0, length)));
   }
-  EXPECT_EQ(good, 6);
+  EXPECT_EQ(good, 7);
   EXPECT_NE(find_streamed(make("a.ply", ply("element vertex 1\n" + xyz +
                                                 "element face 1\nproperty list uchar int vertex_indices\n",
                                             "1 2 3\n3 0 0 0\n")))

@@ -74,7 +74,8 @@ std::vector<Vec3> read_text(const Input& in, std::vector<Warning>& warnings) {
     } else if (ends("solid")) {
       ended = true;
     } else if (!begins_with("solid") && !begins_with("outer") && !ends("loop")) {
-      if (has_control_characters(lines.line())) fail_at_line(in, lines.number(), "the file is damaged");
+      if (has_control_characters(lines.line()))
+        fail_at_line(in, lines.number(), in_quotes(lines.line()) + " contains control characters; the file is damaged");
       lines.skipped().add(lines.number(), lines.line());
     }
   }
