@@ -328,7 +328,7 @@ TEST_F(Dialects, Columns) {
        two_points,
        {},
        {"column_5"},
-       {"columns_unnamed 4 5", "column_ignored column_4"}},
+       {"column_ignored column_4", "columns_unnamed 4 5"}},
       {"a.xyz",
        "1 2 3 0 0 1 0 0 1\n4 5 6 0 0 1 0 0 1\n",
        two_points,
@@ -356,6 +356,7 @@ TEST_F(Dialects, Columns) {
       {"a.asc", "1;2;3\n;5;6\n", {}, {}, {}, {}, "line 2"},
       {"a.xyz", "1 2 3\n4 x 6\n", {}, {}, {}, {}, "line 2"},
       {"a.xyz", "1 2 x\n4 5 6\n", {}, {}, {}, {}, "line 1"},
+      {"a.xyz", "1 2 3\n\"\"\n", {}, {}, {}, {}, "line 2"},
       {"a.xyz", "only words\n", {}, {}, {}, {}, "no points; not understood: 1 line, the first is line 1: 'only words'"},
   });
 }
