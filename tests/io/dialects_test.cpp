@@ -7,7 +7,7 @@
 #include "files.hpp"
 #include "streamed.hpp"
 
-namespace ahm::io::test {
+namespace ahm::io::test::dialects {
 namespace {
 
 /// A file and what `read` finds in it.
@@ -328,7 +328,7 @@ TEST_F(Dialects, Columns) {
        two_points,
        {},
        {"column_5"},
-       {"columns_unnamed 4 5", "column_ignored column_4"}},
+       {"column_ignored column_4", "columns_unnamed 4 5"}},
       {"a.xyz",
        "1 2 3 0 0 1 0 0 1\n4 5 6 0 0 1 0 0 1\n",
        two_points,
@@ -356,6 +356,7 @@ TEST_F(Dialects, Columns) {
       {"a.asc", "1;2;3\n;5;6\n", {}, {}, {}, {}, "line 2"},
       {"a.xyz", "1 2 3\n4 x 6\n", {}, {}, {}, {}, "line 2"},
       {"a.xyz", "1 2 x\n4 5 6\n", {}, {}, {}, {}, "line 1"},
+      {"a.xyz", "1 2 3\n\"\"\n", {}, {}, {}, {}, "line 2"},
       {"a.xyz", "only words\n", {}, {}, {}, {}, "no points; not understood: 1 line, the first is line 1: 'only words'"},
   });
 }
@@ -439,6 +440,12 @@ TEST_F(Dialects, Las) {
 
 // ---- VTK ----
 
+/// The text with the line ends of old Macintosh systems.
+std::string with_returns(std::string text) {
+  std::ranges::replace(text, '\n', '\r');
+  return text;
+}
+
 TEST_F(Dialects, Vtk) {
   const std::string head = "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\n";
   const std::string points = "POINTS 4 float\n0 0 0 1 0 0 0 1 0 1 1 0\n";
@@ -458,6 +465,7 @@ TEST_F(Dialects, Vtk) {
        strip,
        {},
        {"lines_skipped 4 5 '$ by hand'"}},
+      {"a.vtk", with_returns(head + points + "TRIANGLE_STRIPS 1 5\n4 0 1 2 3\n"), square, strip},
       {"a.vtk", head + points + "7 8\n", {}, {}, {}, {}, "'7' is not a VTK keyword"},
       {"a.vtk", binary + "\nEDGE_FLAGS", {}, {}, {}, {}, "'EDGE_FLAGS'"},
   });
@@ -574,8 +582,8 @@ TEST_F(Dialects, Utf16) {
          two_points},
         {"a.xyz", utf16(u"1 2 3\n", order) + "x", {}, {}, {}, {}, "within a character"},
     });
-    const Found streamed = find_streamed(make("a.xyz", utf16(u"1 2 3\n", order)));
-    EXPECT_NE(streamed.error.find("UTF-16"), std::string::npos) << streamed.error;
+    const std::string error = find_streamed(make("a.xyz", utf16(u"1 2 3\n", order))).error;
+    EXPECT_NE(error.find("UTF-16"), std::string::npos) << error;
   }
 }
 
@@ -601,4 +609,4 @@ TEST_F(Dialects, StreamsTheSamePoints) {
 }
 
 }  // namespace
-}  // namespace ahm::io::test
+}  // namespace ahm::io::test::dialects

@@ -50,9 +50,10 @@ std::vector<Vec3> read_text(const Input& in, std::vector<Warning>& warnings) {
   std::vector<std::string_view> words;
   Lines lines(without_byte_order_mark(in.bytes));
   std::size_t in_facet = 0;
-  bool open = false, ended = false;
+  bool open = false, ended = false, skipped = false;  // skipped: the last line
   while (lines.next_data()) {
     split_words(lines.line(), words);
+    skipped = false;
     const auto begins_with = [&](std::string_view word) { return equals_ignoring_case(words[0], word); };
     const auto ends = [&](std::string_view word) {  // "endsolid" or "end solid"
       return (begins_with("end") && words.size() > 1 && equals_ignoring_case(words[1], word)) ||
@@ -74,12 +75,15 @@ std::vector<Vec3> read_text(const Input& in, std::vector<Warning>& warnings) {
     } else if (ends("solid")) {
       ended = true;
     } else if (!begins_with("solid") && !begins_with("outer") && !ends("loop")) {
-      if (has_control_characters(lines.line())) fail_at_line(in, lines.number(), "the file is damaged");
+      if (has_control_characters(lines.line()))
+        fail_at_line(in, lines.number(), in_quotes(lines.line()) + " contains control characters; the file is damaged");
       lines.skipped().add(lines.number(), lines.line());
+      skipped = true;
     }
   }
   if (open) fail_at_line(in, lines.number(), "the file ends within a facet; it is cut short");
   if (corners.empty()) fail(in, "it contains no triangles" + lines.skipped().hint());
+  if (!ended && skipped) fail_at_line(in, lines.number(), "the file ends without 'endsolid'; it is cut short");
   if (!ended) warnings.push_back({"no_end", {}, {}, "endsolid"});
   lines.skipped().report(warnings);
   return corners;

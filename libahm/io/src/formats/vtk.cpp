@@ -37,7 +37,8 @@ bool is_vtk_keyword(std::string_view word) {
 
 class VtkReader {
  public:
-  explicit VtkReader(const Input& in) : in_(in), rest_(in.bytes) {}
+  explicit VtkReader(const Input& in)
+      : in_(in), rest_(in.bytes), end_(in.bytes.find('\n') == std::string::npos ? '\r' : '\n') {}
 
   Geometry read() {
     read_header();
@@ -56,7 +57,7 @@ class VtkReader {
   }
 
   std::string_view line() {
-    const std::size_t end = rest_.find('\n');
+    const std::size_t end = rest_.find(end_);
     std::string_view result = rest_.substr(0, end);
     rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
     if (result.ends_with('\r')) result.remove_suffix(1);
@@ -164,7 +165,7 @@ class VtkReader {
     if (binary_ || is_like_number(keyword) || has_control_characters(keyword))
       fail_here(in_quotes(keyword) + " is not a VTK keyword; the file is damaged");
     const auto begin = static_cast<std::size_t>(keyword.data() - in_.bytes.data());
-    auto number = 1 + std::count(in_.bytes.begin(), in_.bytes.begin() + static_cast<std::ptrdiff_t>(begin), '\n');
+    auto number = 1 + std::count(in_.bytes.begin(), in_.bytes.begin() + static_cast<std::ptrdiff_t>(begin), end_);
     rest_ = std::string_view(in_.bytes).substr(begin);
     for (std::string_view ahead = rest_; !rest_.empty() && !is_vtk_keyword(next_word(ahead)); ahead = rest_)
       skipped_.add(number++, line());
@@ -173,7 +174,7 @@ class VtkReader {
   /// The current line contains the type and optionally the number of components; the next line may name a color table.
   void read_scalars(const std::string& name) {
     const std::string_view type = word_or_fail("the type of an array");
-    std::string_view rest_of_line = rest_.substr(0, rest_.find('\n'));
+    std::string_view rest_of_line = rest_.substr(0, rest_.find(end_));
     const std::uint64_t width = next_word(rest_of_line).empty() ? 1 : count("the number of components");
     std::string_view ahead = rest_;
     if (equals_ignoring_case(next_vtk_word(ahead), "lookup_table")) {
@@ -287,6 +288,7 @@ class VtkReader {
 
   const Input& in_;
   std::string_view rest_;
+  char end_;  ///< of a line
   bool binary_ = false, offsets_ = false, polydata_ = false;
   bool has_points_ = false;
   bool by_point_ = false;  ///< the following arrays have a value per point

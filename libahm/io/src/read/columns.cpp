@@ -224,9 +224,8 @@ class ColumnReader {
       if (line_.starts_with("//")) {
         line_.remove_prefix(2);
         if (!has_columns() && are_names(line_)) return true;
-      } else if (line_.empty()) {
-        const std::string_view comment = trimmed(lines_.line()).substr(1);
-        if (!has_columns() && are_names(comment)) keep_title(comment);
+      } else if (const std::string_view whole = trimmed(lines_.line()); line_.empty() && whole.starts_with('#')) {
+        if (!has_columns() && are_names(whole.substr(1))) keep_title(whole.substr(1));
       } else if (is_remark(line_) && !begins_with_empty_column()) {
         lines_.skipped().add(lines_.number(), line_);
       } else {
@@ -372,11 +371,9 @@ class ColumnReader {
     if (columns_ == 7 && intensity_) triples_.push_back({ColumnRole::colors, {4, 5, 6}});
     if (columns_ > 3 && triples_.empty() && !intensity_)
       for (std::size_t column = 3; column < columns_; ++column) others_.push_back({column, unnamed(column)});
-    if (!others_.empty()) warn_unnamed();
   }
 
   static std::string unnamed(std::size_t column) { return "column_" + std::to_string(column + 1); }
-  void warn_unnamed() { g_.warnings.push_back({"columns_unnamed", {4, static_cast<double>(columns_)}, {}}); }
 
   Vec3 vector(const std::array<std::size_t, 3>& columns) const {
     Vec3 result;
@@ -395,7 +392,6 @@ class ColumnReader {
         for (const Vec3& value : triple.values) other.values.push_back(value[c]);
       }
     triples_.clear();
-    warn_unnamed();
   }
 
   void keep() {
@@ -406,6 +402,8 @@ class ColumnReader {
       else
         g_.warnings.push_back({"column_ignored", {}, {}, other.name});
     }
+    if (names_line_ == 0 && std::ranges::any_of(others_, &Other::is_numbers))
+      g_.warnings.push_back({"columns_unnamed", {4, static_cast<double>(columns_)}, {}});
     for (Triple& triple : triples_) {
       if (triple.role == ColumnRole::normals) {
         g_.normals = std::move(triple.values);

@@ -158,13 +158,16 @@ void set_viewpoint(const Input& in, std::int64_t line, const Words& words, PcdHe
   }
 }
 
-/// Reads the header up to the line DATA. Lines end with "\n", because binary data may follow.
+/// Reads the header up to the line DATA. The end of the first line determines whether lines end with a lone "\r"; binary data follows.
 RawHeader read_lines(const Input& in, PcdHeader& header) {
   RawHeader raw;
   Words words;
   std::size_t position = 0;
+  const std::size_t first = in.bytes.find_first_of("\r\n");
+  const char end_of_line =
+      first != std::string::npos && in.bytes.compare(first, 2, "\r\n") != 0 ? in.bytes[first] : '\n';
   for (std::int64_t line = 1;; ++line) {
-    const std::size_t end = in.bytes.find('\n', position);
+    const std::size_t end = in.bytes.find(end_of_line, position);
     if (end == std::string::npos)
       fail_at_line(in, line, "the PCD header has no 'DATA' line; the file is cut short or not a PCD file");
     const std::string_view text = std::string_view(in.bytes).substr(position, end - position);
