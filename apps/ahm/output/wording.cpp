@@ -41,36 +41,12 @@ constexpr Advice advices[] = {
     {"row_left_out", "--voxel, --outliers, --drop-nan or --local removed it; choose another row, or write x,y,z"},
 };
 
-/// Puts an error that begins with "1 " into the singular: the first noun and the first verb after it. Libraries write errors in the
-/// plural.
-std::string in_singular(std::string text) {
-  if (!text.starts_with("1 ")) return text;
-  using Forms = std::pair<std::string_view, std::string_view>;
-  constexpr Forms nouns[] = {{" vertices ", " vertex "}, {" faces ", " face "}, {" edges ", " edge "},
-                             {" points ", " point "},    {" lines ", " line "}, {" statements ", " statement "},
-                             {" sets ", " set "},        {" pairs ", " pair "}, {" neighbors ", " neighbor "}};
-  constexpr Forms verbs[] = {{" are ", " is "},     {" were ", " was "},    {" have ", " has "},
-                             {" use ", " uses "},   {" join ", " joins "},  {" contain ", " contains "},
-                             {" form ", " forms "}, {" point ", " points "}};
-  const auto change_first = [&](std::span<const Forms> forms, std::size_t from) {
-    std::size_t first = std::string::npos;
-    const Forms* chosen = nullptr;
-    for (const Forms& form : forms)
-      if (const std::size_t at = text.find(form.first, from); at < first) first = at, chosen = &form;
-    if (chosen == nullptr) return from;
-    text.replace(first, chosen->first.size(), chosen->second);
-    return first + chosen->second.size() - 1;
-  };
-  change_first(verbs, change_first(nouns, 0));
-  return text;
-}
-
 }  // namespace
 
 std::string worded(const Error& error) {
   for (const auto& [fault, remedy] : advices)
-    if (error.fault() == fault) return in_singular(fmt::format("{}; {}", error.problem(), remedy));
-  return in_singular(error.what());
+    if (error.fault() == fault) return fmt::format("{}; {}", error.problem(), remedy);
+  return error.what();
 }
 
 nlohmann::ordered_json as_json(const Report& report) {

@@ -89,8 +89,8 @@ class GltfReader {
   GltfArray vectors(std::uint64_t accessor, std::size_t least_width) {
     GltfArray array = file_.array(accessor);
     if (array.width < least_width)
-      fail(in_, "accessor " + std::to_string(accessor) + " has vectors of " + std::to_string(array.width) +
-                    " numbers, not " + std::to_string(least_width));
+      fail(in_, "accessor " + std::to_string(accessor) + " has vectors of " + detail::counted(array.width, "number") +
+                    ", not " + std::to_string(least_width));
     return array;
   }
 
@@ -158,8 +158,8 @@ class GltfReader {
     }
     for (const double index : vectors(accessor, 1).values) {
       if (!(index >= 0 && index < static_cast<double>(count)))
-        fail(in_, "a face has vertex number " + detail::number(index) + ", but there are " + std::to_string(count) +
-                      " vertices, counted from 0");
+        fail(in_, "a face has vertex number " + detail::number(index) + ", but there are " +
+                      detail::counted(count, "vertex") + ", counted from 0");
       result.push_back(static_cast<std::size_t>(index));
     }
     return result;
@@ -174,7 +174,7 @@ class GltfReader {
   /// @param turned  whether the placement mirrors the faces: they are reversed, so that their front sides stay outside
   void add_faces(std::uint64_t mode, const std::vector<std::size_t>& corners, std::size_t first, bool turned) {
     if (mode == triangles && corners.size() % 3 != 0)
-      fail(in_, "a primitive of triangles has " + std::to_string(corners.size()) + " corners");
+      fail(in_, "a primitive of triangles has " + detail::counted(corners.size(), "corner"));
     if (g_.face_begin.empty()) g_.face_begin.push_back(0);
     const auto add = [&](std::size_t a, std::size_t b, std::size_t c) {
       if (mode == strip && (a == b || b == c || c == a)) return;  // connects two parts of the strip

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "ahm/util/text.hpp"
 #include "formats/format.hpp"
 #include "little_endian.hpp"
 #include "read/columns.hpp"
@@ -57,7 +58,7 @@ LasHeader parse_fields(const Input& in) {
   if (size < header_sizes[header.minor])
     fail_at_byte(
         in, 94,
-        "a header of " + std::to_string(size) + " bytes is too small for LAS 1." + std::to_string(header.minor));
+        "a header of " + detail::counted(size, "byte") + " is too small for LAS 1." + std::to_string(header.minor));
   header.begin = load_at<std::uint32_t>(in.bytes, 96);
   if (header.begin < size || header.begin > in.size())
     fail_at_byte(in, 96,
@@ -95,15 +96,14 @@ LasHeader parse_header(const Input& in) {
     fail_at_byte(in, 104, "point format " + std::to_string(header.format) + " is not supported; 0 to 10 are");
   if (header.stride < records[header.format].size)
     fail_at_byte(in, 105,
-                 "records of " + std::to_string(header.stride) + " bytes are too small for point format " +
+                 "records of " + detail::counted(header.stride, "byte") + " are too small for point format " +
                      std::to_string(header.format));
   check_vertex_count(in, header.points);
   const std::uint64_t left = in.size() - header.begin;
   if (header.points > left / header.stride)
     fail_at_byte(in, header.begin,
-                 std::to_string(header.points) + " points of " + std::to_string(header.stride) +
-                     " bytes do not fit into the " + std::to_string(left) +
-                     " bytes that follow; the file is cut short");
+                 detail::counted(header.points, "point") + " of " + detail::counted(header.stride, "byte") +
+                     " do not fit into the " + detail::counted(left, "byte") + " that follow; the file is cut short");
   return header;
 }
 

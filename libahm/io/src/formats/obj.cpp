@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "ahm/util/text.hpp"
 #include "formats/format.hpp"
 #include "read/columns.hpp"
 #include "read/text.hpp"
@@ -62,7 +63,7 @@ class ObjReader {
     if (largest_ > g_.points.size()) {
       fail_at_line(in_, largest_line_,
                    "a face has vertex number " + std::to_string(largest_) + ", but the file has only " +
-                       std::to_string(g_.points.size()) + " vertices");
+                       detail::counted(g_.points.size(), "vertex"));
     }
     finish_normals();
     finish_colors();

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "ahm/util/text.hpp"
 #include "formats/format.hpp"
 #include "read/columns.hpp"
 #include "read/text.hpp"
@@ -88,9 +89,9 @@ OffHeader parse_header(const Input& in, Words& words) {
   const std::uint64_t left = in.bytes.size() - std::min(in.bytes.size(), words.position()) + 1;
   if (header.vertices > left / 6 || header.faces > left / 2) {
     fail_at_line(in, words.line(),
-                 std::to_string(header.vertices) + " vertices and " + std::to_string(header.faces) +
-                     " faces do not fit into the " + std::to_string(left - 1) +
-                     " bytes that follow; the file is cut short");
+                 detail::counted(header.vertices, "vertex") + " and " + detail::counted(header.faces, "face") +
+                     " do not fit into the " + detail::counted(left - 1, "byte") +
+                     " that follow; the file is cut short");
   }
   check_vertex_count(in, header.vertices);
   return header;
@@ -146,7 +147,7 @@ void read_faces(const Input& in, Words& words, const OffHeader& header, Geometry
       if (vertex < 0 || static_cast<std::uint64_t>(vertex) >= header.vertices) {
         fail_at_line(in, words.line(),
                      "face " + std::to_string(f) + " has vertex number " + std::to_string(vertex) + ", but there are " +
-                         std::to_string(header.vertices) + " vertices, counted from 0");
+                         detail::counted(header.vertices, "vertex") + ", counted from 0");
       }
       g.face_vertices.push_back(static_cast<Index>(vertex));
     }

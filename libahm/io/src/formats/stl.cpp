@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "ahm/util/text.hpp"
 #include "ahm/util/weld.hpp"
 #include "formats/format.hpp"
 #include "little_endian.hpp"
@@ -27,12 +28,12 @@ std::vector<Vec3> read_binary(const Input& in) {
   const std::uint64_t triangles = load_at<std::uint32_t>(in.bytes, 80), left = in.bytes.size() - header_bytes;
   if (triangles == 0 && left >= triangle_bytes)
     fail_at_byte(in, 80,
-                 "the header announces 0 triangles, but " + std::to_string(left) + " bytes follow, enough for " +
+                 "the header announces 0 triangles, but " + detail::counted(left, "byte") + " follow, enough for " +
                      std::to_string(left / triangle_bytes) + "; its writer was interrupted: export the file again");
   if (triangles > left / triangle_bytes)
     fail_at_byte(in, 80,
-                 std::to_string(triangles) + " triangles do not fit into the " + std::to_string(left) +
-                     " bytes that follow; the file is cut short");
+                 detail::counted(triangles, "triangle", "do") + " not fit into the " + detail::counted(left, "byte") +
+                     " that follow; the file is cut short");
   std::vector<Vec3> corners;
   corners.reserve(3 * triangles);
   for (std::uint64_t t = 0; t < triangles; ++t)

@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include "ahm/util/text.hpp"
 #include "formats/format.hpp"
 #include "read/text.hpp"
 #include "read/vtk_data.hpp"
@@ -123,8 +124,8 @@ class VtkReader {
       piece_.has_cell_data = piece_.has_cell_data || !by_point_;
       if (by_point_ && !has_points_) fail_here("POINT_DATA appears before POINTS");
       if (by_point_ && tuples_ != piece_.points)
-        fail_here("there are values for " + std::to_string(tuples_) + " points, but there are " +
-                  std::to_string(piece_.points) + " points");
+        fail_here("there are values for " + detail::counted(tuples_, "point") + ", but there are " +
+                  detail::counted(piece_.points, "point"));
     } else {
       read_attribute(keyword);
     }
@@ -234,8 +235,9 @@ class VtkReader {
     if (binary_) line();
     const std::uint64_t most = binary_ ? rest_.size() / type->size : (rest_.size() + 1) / 2;
     if (width > 0 && tuples > most / width)
-      fail_here(std::to_string(tuples) + " times " + std::to_string(width) + " numbers of " + in_quotes(name) +
-                " do not fit into the " + std::to_string(rest_.size()) + " bytes that follow; the file is cut short");
+      fail_here(std::to_string(tuples) + " times " + detail::counted(width, "number") + " of " + in_quotes(name) +
+                " do not fit into the " + detail::counted(rest_.size(), "byte") +
+                " that follow; the file is cut short");
     const std::uint64_t all = tuples * width;
     VtkArray array{name, width, type->whole, {}};
     if (binary_) {
@@ -269,12 +271,12 @@ class VtkReader {
     for (std::uint64_t c = 0; c < first; ++c) {
       if (at >= all.size() || !(all[at] >= 0 && all[at] < static_cast<double>(all.size() - at)))
         fail_here("cell " + std::to_string(c) + " of " + std::to_string(first) + " does not fit into its " +
-                  std::to_string(second) + " numbers");
+                  detail::counted(second, "number"));
       const auto corners = static_cast<std::size_t>(all[at++]);
       for (std::size_t k = 0; k < corners; ++k) cells.corners.push_back(all[at++]);
       cells.begin.push_back(static_cast<double>(cells.corners.size()));
     }
-    if (at != all.size()) fail_here("the cells end before their " + std::to_string(second) + " numbers do");
+    if (at != all.size()) fail_here("the cells end before their " + detail::counted(second, "number", "do"));
     return cells;
   }
 

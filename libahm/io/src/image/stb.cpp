@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "ahm/io/image.hpp"
+#include "ahm/util/text.hpp"
 
 #ifdef AHM_WITH_ZLIB
 #include <zlib.h>
@@ -87,7 +88,7 @@ std::string png_bytes(const Image& image) {
   if (image.width < 1 || image.height < 1 ||
       image.rgba.size() != 4 * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height))
     throw InvalidArgument("image: " + std::to_string(image.width) + " x " + std::to_string(image.height) +
-                          " pixels do not fit " + std::to_string(image.rgba.size()) + " bytes");
+                          " pixels do not fit " + detail::counted(image.rgba.size(), "byte"));
   // Fully opaque images are written without the alpha channel: a quarter less data to compress.
   bool opaque = true;
   for (std::size_t k = 3; k < image.rgba.size() && opaque; k += 4) opaque = image.rgba[k] == 255;

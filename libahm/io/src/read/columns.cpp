@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "ahm/util/text.hpp"
 #include "read/text.hpp"
 
 namespace ahm::io {
@@ -335,7 +336,7 @@ class ColumnReader {
     if (columns_ == 0 && !title_names_columns()) choose_columns();
     if (words_.size() != columns_)
       fail_at_line(in_, lines_.number(),
-                   "expected " + std::to_string(columns_) + " columns, " +
+                   "expected " + detail::counted(columns_, "column") + ", " +
                        (names_line_ > 0 ? "the number of names in line " + std::to_string(names_line_)
                                         : "as in the lines before") +
                        ", found " + std::to_string(words_.size()));

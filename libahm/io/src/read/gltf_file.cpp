@@ -29,14 +29,14 @@ Chunks find_chunks(const Input& in) {
   const std::uint64_t size = load_at<std::uint32_t>(bytes, 8);
   if (size > bytes.size())
     fail_at_byte(in, 8,
-                 "the file should have " + std::to_string(size) + " bytes, but has " + std::to_string(bytes.size()) +
+                 "the file should have " + detail::counted(size, "byte") + ", but has " + std::to_string(bytes.size()) +
                      "; it is cut short");
   Chunks chunks;
   for (std::uint64_t at = 12; at + 8 <= size;) {
     const std::uint64_t length = load_at<std::uint32_t>(bytes, at);
     const auto kind = load_at<std::uint32_t>(bytes, at + 4);
     if (length > size - at - 8)
-      fail_at_byte(in, at, "a chunk of " + std::to_string(length) + " bytes does not fit into the file");
+      fail_at_byte(in, at, "a chunk of " + detail::counted(length, "byte") + " does not fit into the file");
     const std::string_view chunk = bytes.substr(at + 8, length);
     if (kind == json_chunk && chunks.json.empty()) chunks.json = chunk;
     if (kind == binary_chunk && chunks.binary.empty()) chunks.binary = chunk;
@@ -146,7 +146,7 @@ std::vector<double> GltfFile::numbers(const Json& object, const char* member, st
     for (const Json& entry : *found)
       if (entry.is_number()) result.push_back(entry.get<double>());
   if (!found->is_array() || found->size() != count || result.size() != count)
-    fail(in_, "'" + std::string(member) + "' must be " + std::to_string(count) + " numbers");
+    fail(in_, "'" + std::string(member) + "' must be " + detail::counted(count, "number"));
   return result;
 }
 
@@ -168,7 +168,7 @@ const std::string& GltfFile::buffer(std::uint64_t index) {
     bytes = load(file(uri)).bytes;
   }
   if (const std::uint64_t length = whole(object, "byteLength", 0); length > bytes.size())
-    fail(in_, "buffer " + std::to_string(index) + " should have " + std::to_string(length) + " bytes, but has " +
+    fail(in_, "buffer " + std::to_string(index) + " should have " + detail::counted(length, "byte") + ", but has " +
                   std::to_string(bytes.size()) + "; the file is cut short");
   return bytes;
 }
@@ -215,11 +215,11 @@ std::vector<double> GltfFile::read_elements(const Json& place, const Elements& e
   const std::uint64_t element = e.component.size * e.width, given = whole(view, "byteStride", 0),
                       stride = given == 0 ? element : given;
   if (stride < element)
-    fail(in_, e.name + " has elements of " + std::to_string(element) + " bytes, which a byteStride of " +
+    fail(in_, e.name + " has elements of " + detail::counted(element, "byte") + ", which a byteStride of " +
                   std::to_string(given) + " does not hold");
   if (begin > bytes.size() || length > bytes.size() - begin || offset > length ||
       (e.count > 0 && (length - offset < element || e.count - 1 > (length - offset - element) / stride)))
-    fail(in_, e.name + " with " + std::to_string(e.count) + " elements does not fit into its buffer");
+    fail(in_, e.name + " with " + detail::counted(e.count, "element") + " does not fit into its buffer");
   std::vector<double> values(e.count * e.width);
   for (std::uint64_t k = 0; k < e.count; ++k)
     for (std::size_t c = 0; c < e.width; ++c)

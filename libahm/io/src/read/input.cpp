@@ -16,6 +16,7 @@
 
 #include "ahm/error.hpp"
 #include "ahm/types.hpp"
+#include "ahm/util/text.hpp"
 #include "read/bytes.hpp"
 
 namespace ahm::io {
@@ -149,7 +150,7 @@ void fail_at_byte(const Input& in, std::size_t byte, const std::string& what) {
 
 void check_vertex_count(const Input& in, std::uint64_t count) {
   if (count > static_cast<std::uint64_t>(std::numeric_limits<Index>::max())) {
-    fail(in, std::to_string(count) + " vertices are more than 2147483647, the maximum");
+    fail(in, detail::counted(count, "vertex", "are") + " more than 2147483647, the maximum");
   }
 }
 

@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 
+#include "ahm/util/text.hpp"
 #include "read/point_stream.hpp"
 #include "write/writers.hpp"
 
@@ -258,9 +259,9 @@ void set_points(const Input& in, const RawHeader& raw, PcdHeader& header) {
 
 [[noreturn]] void fail_size(const Input& in, const PcdHeader& header, std::uint64_t needed) {
   fail_at_byte(in, header.body,
-               std::to_string(header.points) + " points of " + std::to_string(header.point_size) + " bytes need " +
-                   std::to_string(needed) + " bytes, but only " + std::to_string(in.size() - header.body) +
-                   " follow the header; the file is cut short");
+               detail::counted(header.points, "point") + " of " + detail::counted(header.point_size, "byte") +
+                   " need " + detail::counted(needed, "byte") + ", but only " +
+                   std::to_string(in.size() - header.body) + " follow the header; the file is cut short");
 }
 
 }  // namespace
@@ -300,7 +301,7 @@ void check_pcd_size(const Input& in, const PcdHeader& header) {
   if (plain > left) fail_size(in, header, plain);
   if (!header.skipped.empty() && plain != left)
     fail_at_byte(in, header.body,
-                 "the points need " + std::to_string(plain) + " bytes, but " + std::to_string(left) +
+                 "the points need " + detail::counted(plain, "byte") + ", but " + std::to_string(left) +
                      " follow the header, which may be damaged" + header.skipped.hint());
 }
 
@@ -313,12 +314,12 @@ std::array<std::uint32_t, 2> pcd_sizes(const Input& in, const PcdHeader& header)
   if (sizes[0] > left - sizeof sizes) {
     fail_at_byte(in, header.body,
                  "the compressed size " + std::to_string(sizes[0]) + " exceeds the " +
-                     std::to_string(left - sizeof sizes) + " bytes that follow; the file is cut short");
+                     detail::counted(left - sizeof sizes, "byte") + " that follow; the file is cut short");
   }
   if (sizes[1] != plain) {
     fail_at_byte(in, header.body + 4,
                  "the uncompressed size " + std::to_string(sizes[1]) + " is not that of " +
-                     std::to_string(header.points) + " points: " + std::to_string(plain));
+                     detail::counted(header.points, "point") + ": " + std::to_string(plain));
   }
   // Three bytes of LZF unpack to at most 264 bytes. Reject larger sizes before allocating memory for them.
   if (plain / 88 > sizes[0])
@@ -341,13 +342,13 @@ void read_pcd_text(const Input& in, const PcdHeader& header, Lines& lines,
     for (std::string_view word : words) real_or_fail(in, lines.number(), word);
     if (words.size() != per_point) {
       fail_at_line(in, lines.number(),
-                   "expected " + std::to_string(per_point) + " numbers, found " + std::to_string(words.size()));
+                   "expected " + detail::counted(per_point, "number") + ", found " + std::to_string(words.size()));
     }
     use(words);
   }
   if (point < header.points) {
     fail_at_line(in, lines.number(),
-                 "the file ends after " + std::to_string(point) + " of " + std::to_string(header.points) + " points");
+                 "the file ends after " + std::to_string(point) + " of " + detail::counted(header.points, "point"));
   }
 }
 

@@ -16,6 +16,7 @@
 #include <string>
 #include <utility>
 
+#include "ahm/util/text.hpp"
 #include "read/columns.hpp"
 #include "read/pcd_header.hpp"
 
@@ -122,8 +123,8 @@ void check_result(const Input& in, const PcdHeader& header, const PCLPointCloud2
     inside = inside && size > 0 && field.offset + size * field.count <= cloud.point_step;
   }
   if (!inside)
-    fail(in, "PCL read " + std::to_string(points) + " of " + std::to_string(header.points) +
-                 " points; the file is damaged");
+    fail(in, "PCL read " + std::to_string(points) + " of " + detail::counted(header.points, "point") +
+                 "; the file is damaged");
 }
 
 void read_vectors(const Input& in, const PCLPointCloud2& cloud, std::array<const char*, 3> names,

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "ahm/error.hpp"
+#include "ahm/util/text.hpp"
 #include "read/point_stream.hpp"
 #include "read/text.hpp"
 
@@ -101,9 +102,9 @@ void check_against_size(const Input& in, const PlyHeader& header) {
     if (least == 0) continue;
     if (element.count > left / least) {
       fail_at_line(in, element.line,
-                   "element '" + element.name + "' should have " + std::to_string(element.count) +
-                       " items of at least " + std::to_string(least) + " bytes, but only " + std::to_string(left) +
-                       " bytes are left; the file is cut short or its header is wrong");
+                   "element '" + element.name + "' should have " + detail::counted(element.count, "item") +
+                       " of at least " + detail::counted(least, "byte") + ", but only " +
+                       detail::counted(left, "byte", "are") + " left; the file is cut short or its header is wrong");
     }
     left -= element.count * least;
   }

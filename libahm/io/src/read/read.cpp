@@ -3,6 +3,7 @@
 #include <new>
 
 #include "ahm/io/formats.hpp"
+#include "ahm/util/text.hpp"
 #include "formats/format.hpp"
 
 namespace ahm::io {
@@ -77,8 +78,8 @@ void check_faces(const std::filesystem::path& path, const Geometry& g) {
     for (const Index vertex : g.face(f)) {
       if (vertex >= 0 && static_cast<std::size_t>(vertex) < g.points.size()) continue;
       throw IoError("cannot read " + quoted_path(path) + ": face " + std::to_string(f) + " has vertex number " +
-                    std::to_string(vertex) + ", but there are " + std::to_string(g.points.size()) +
-                    " vertices, counted from 0");
+                    std::to_string(vertex) + ", but there are " + detail::counted(g.points.size(), "vertex") +
+                    ", counted from 0");
     }
   }
 }

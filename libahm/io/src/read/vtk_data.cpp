@@ -9,6 +9,7 @@
 #include <span>
 #include <type_traits>
 
+#include "ahm/util/text.hpp"
 #include "read/columns.hpp"
 #include "read/text.hpp"
 
@@ -149,7 +150,7 @@ class Joiner {
       for (const double corner : corners)
         if (!(corner >= 0 && corner < static_cast<double>(piece.points)))
           fail(in_, kind + " " + std::to_string(c) + " has vertex number " + shown(corner) + ", but there are " +
-                        std::to_string(piece.points) + " vertices, counted from 0");
+                        detail::counted(piece.points, "vertex") + ", counted from 0");
       use(corners);
     }
   }

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "ahm/error.hpp"
+#include "ahm/util/text.hpp"
 #include "read/bytes.hpp"
 #include "read/gunzip.hpp"
 #include "read/text.hpp"
@@ -250,7 +251,7 @@ class VtpReader {
       array.values = load_vtk_numbers(read_bytes(node, format, *type, what), *type, encoding_.big_endian);
     const std::uint64_t count = array.values.size();
     if (tuples && (array.width == 0 || count % array.width != 0 || count / array.width != *tuples))
-      fail(in_, what + " has " + std::to_string(count) + " numbers, not " + std::to_string(array.width) +
+      fail(in_, what + " has " + detail::counted(count, "number") + ", not " + std::to_string(array.width) +
                     " for each of " + std::to_string(*tuples));
     return array;
   }
@@ -273,7 +274,7 @@ class VtpReader {
     }
     if (bytes.size() % type.size != 0)
       fail(in_,
-           what + " has " + std::to_string(bytes.size()) + " bytes, not a multiple of " + std::to_string(type.size));
+           what + " has " + detail::counted(bytes.size(), "byte") + ", not a multiple of " + std::to_string(type.size));
     return bytes;
   }
 

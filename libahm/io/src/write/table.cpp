@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "ahm/error.hpp"
+#include "ahm/util/text.hpp"
 #include "write/writers.hpp"
 
 namespace ahm::io {
@@ -25,7 +26,7 @@ void check_name(const std::string& name) {
 
 void check_row(const std::string& what, Index row, std::size_t rows) {
   if (row >= 0 && static_cast<std::size_t>(row) < rows) return;
-  fail(what + " is " + std::to_string(row) + ", but there are " + std::to_string(rows) + " rows");
+  fail(what + " is " + std::to_string(row) + ", but there are " + detail::counted(rows, "row"));
 }
 
 void check_faces(const FaceList& faces, std::size_t rows) {
@@ -73,7 +74,7 @@ void check(const Table& table) {
   for (const Column& column : table.columns) {
     for (const std::string& name : column.names) check_name(name);
     if (column.rows() != rows)
-      fail(column.names.front() + " has " + std::to_string(column.rows()) + " rows, but " +
+      fail(column.names.front() + " has " + detail::counted(column.rows(), "row") + ", but " +
            table.columns.front().names.front() + " has " + std::to_string(rows));
     if (const auto* words = std::get_if<CodedWords>(&column.values); words != nullptr && rows > 0)
       check_row(column.names.front(), *std::ranges::max_element(words->codes), words->words.size());
