@@ -23,7 +23,7 @@ class PointCloud(Surface):
     normal_signs : meaning of the signs of `normals`. "automatic": the majority in each component decides which side is up.
         "oriented": every sign is correct. "unoriented": the signs are ignored.
     smooth : radius of the neighborhoods for smoothing, world units. The points are smoothed before the graph is built; `points`
-        returns the input. None: automatic, where the noise exceeds one eighth of the spacing. 0: no smoothing.
+        returns the input. None: automatic, where the noise exceeds 0.12 of the spacing. 0: no smoothing.
     max_edge_ratio : two points are joined only if their distance is at most this multiple of the distance to the k-th neighbor.
     drop_non_finite : drop points with NaN or infinite coordinates (status `removed`) instead of raising.
     rows : rows to build the surface from, ascending; None: all. The other rows get the status `removed`.

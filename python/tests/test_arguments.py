@@ -119,7 +119,7 @@ TWISTED = [[0, 0, 0], [3, 2, 0], [4, 1, 0], [3, 0, 0], [0, 1, 0], [-1, 0.5, 0]] 
 
 
 @pytest.mark.parametrize("call, text", [
-    (lambda f: ahm.TriangleMesh(V6, [[0, 1, 2], [1, 0, 3], [0, 1, 4]]), r"edges have more.*non_manifold='split'"),
+    (lambda f: ahm.TriangleMesh(V6, [[0, 1, 2], [1, 0, 3], [0, 1, 4]]), r"edge has more.*non_manifold='split'"),
     (lambda f: ahm.TriangleMesh(V6, [[0, 1, 2], [0, 3, 4]]), r"bow ties.*non_manifold='split'"),
     (lambda f: ahm.PolygonMesh(TWISTED, [[0, 1, 2, 3, 4, 5]], discretization="refined"), r"twisted.*discretization='polygons'"),
     (lambda f: ahm.ExactGeodesics(f["polygons"]), r"discretization='refined', or use method 'heat'"),

@@ -207,7 +207,8 @@ void offer(CLI::App& app, CellsOptions& o) {
   add_table_output(app, o.output)->required();
   add_method(app, o.solve, {Method::exact})
       ->description(
-          "heat (default): distances by a wavefront on the graph; exact: by straight lines over the faces of a mesh");
+          "heat (default): distances by a wavefront over the graph, without solving for heat;\n"
+          "exact: by straight lines over the faces of a mesh");
   add_tolerance(app, o.solve);
   add_backend(app, o.input);
   add_threads(app, o.input);

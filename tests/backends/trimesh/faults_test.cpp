@@ -22,7 +22,7 @@ TEST(MeshFaults, AreNamed) {
       {"no faces", [](Mesh& mesh) { mesh.faces.clear(); }},
       {"face 7", [](Mesh& mesh) { mesh.faces[7][1] = mesh.vertices(); }},
       {"outside [0, 42)", [](Mesh& mesh) { mesh.faces[7][1] = -1; }},
-      {"use a vertex twice: face 7", [](Mesh& mesh) { mesh.faces[7][1] = mesh.faces[7][0]; }},
+      {"uses a vertex twice: face 7", [](Mesh& mesh) { mesh.faces[7][1] = mesh.faces[7][0]; }},
       {"face 80 repeats face 3", [](Mesh& mesh) { mesh.faces.push_back(mesh.faces[3]); }},
       {"face 80 repeats face 3",
        [](Mesh& mesh) {

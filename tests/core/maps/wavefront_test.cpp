@@ -196,10 +196,14 @@ TEST(Wavefront, RefusesSourcesThatDoNotFit) {
 }
 
 TEST(OneRings, AreComputedOncePerGraph) {
-  const CsrGraph flat(planar_triangulation(12).data), round(sphere_graph(300)), copy(flat);
+  const CsrGraph flat(planar_triangulation(12).data), copy(flat);
+  const Mesh sphere = icosphere(4);
+  const auto surface = trimesh::TriangleMeshSurface::build(sphere.positions, sphere.faces);
   EXPECT_EQ(Wavefront::one_rings(flat), Wavefront::one_rings(flat, 2));
   EXPECT_EQ(Wavefront::one_rings(flat, 1, false), Wavefront::one_rings(flat, 1, false));
-  EXPECT_NE(Wavefront::one_rings(round, 1, false), Wavefront::one_rings(round, 1, true));
+  EXPECT_EQ(Wavefront::one_rings(surface.graph()), Wavefront::one_rings(surface.graph()));
+  EXPECT_NE(Wavefront::one_rings(surface.graph(), 1, false), Wavefront::one_rings(surface.graph(), 1, true))
+      << "midpoints";
   EXPECT_NE(Wavefront::one_rings(copy), Wavefront::one_rings(flat));
 }
 

@@ -14,7 +14,7 @@ void add_xyz(Cases& c) {
          "1 2 3, 4 5 6");
   c.good("normals.xyz", "1 2 3 0 0 1\n4 5 6 0 1 0\n", "1 2 3, 4 5 6; normals 0 0 1, 0 1 0");
   c.good("colors.txt", "1 2 3 0 0 1\n4 5 6 200 1 0\n", "1 2 3, 4 5 6; colors 0 0 1, 200 1 0; columns_as_colors 4 6");
-  c.good("four.xyz", "1 2 3 0.7\n4 5 6 word\n", "1 2 3, 4 5 6; columns_unnamed 4 4; column_ignored column_4");
+  c.good("four.xyz", "1 2 3 0.7\n4 5 6 word\n", "1 2 3, 4 5 6; column_ignored column_4");
   c.good("nine.xyz", "1 2 3 200 10 0 0 0 1\n4 5 6 0 0 0 0 1 0\n",
          "1 2 3, 4 5 6; normals 0 0 1, 0 1 0; colors 200 10 0, 0 0 0; columns_as_colors 4 6");
   c.good("normals_twice.xyz", "1 2 3 0 0 1 0 0 1\n",

@@ -19,6 +19,7 @@
 #include "ahm/fields/vector_heat.hpp"
 #include "ahm/graph/components.hpp"
 #include "ahm/graph/csr_graph.hpp"
+#include "ahm/graph/graph_cache.hpp"
 #include "ahm/graph/tangent_graph.hpp"
 #include "ahm/graph/transport.hpp"
 #include "ahm/graph/validate.hpp"

@@ -39,7 +39,7 @@ struct CloudOptions {
   NormalSigns normal_signs = NormalSigns::automatic;
   /// Two points are joined only if their distance is at most this multiple of the distance to the k-th neighbor of each of them.
   double max_edge_ratio = 3.0;
-  /// Smoothing of the points by moving least squares, before the graph is built. Not set: where the noise exceeds one eighth of
+  /// Smoothing of the points by moving least squares, before the graph is built. Not set: where the noise exceeds 0.12 of
   /// the spacing, over the k neighbors. 0: off. Otherwise all points are smoothed, with neighborhoods of this radius, world
   /// units.
   std::optional<double> smooth;

@@ -30,7 +30,7 @@ struct MapOptions {
   bool frames = false;  ///< keep the transported frames
   bool spread = true;   ///< compute `LogMap::spread`; a fifth of the work if distances are unfolded
   /// Compute `LogMap::distance`. On triangulations a wavefront computes it, in 0.3 to 0.5 us per vertex and thread, which is most of the
-  /// time of an additional map (docs/results/performance.md). Without it the distance is |phi|, and the map has no spread and no quality.
+  /// time of an additional map (docs/results/runtime.md). Without it the distance is |phi|, and the map has no spread and no quality.
   bool distances = true;
   std::optional<Progress> progress = {};
 };
