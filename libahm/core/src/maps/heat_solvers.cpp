@@ -33,19 +33,15 @@ HeatGraph::HeatGraph(const TangentGraph& graph, const HeatOptions& options)
       times(scales, options.t_coef),
       builder(graph, scales.components.of_vertex) {}
 
-/// One-rings of the graph, computed at the first call; null on graphs that are not triangulations. With strategy `march` they contain
-/// only the vertices that have midpoints.
+/// One-rings of the graph; null on graphs that are not triangulations. With strategy `march` they contain only the vertices that have
+/// midpoints.
 std::shared_ptr<const Wavefront::OneRings> HeatGraph::one_rings(unsigned threads) const {
   if (!graph.is_delaunay()) return nullptr;
-  std::call_once(once_, [&] {
-    if (strategy == Strategy::global) {
-      one_rings_ = Wavefront::one_rings(graph, threads);
-    } else {
-      std::vector<std::uint8_t> halved = halved_vertices(scales.components.of_vertex, scales.sizes);
-      one_rings_ = std::make_shared<const Wavefront::OneRings>(graph, std::move(halved), false, threads);
-    }
+  return one_rings_.get<Wavefront::OneRings>(GraphCache::Kind::one_rings_with_midpoints, [&] {
+    if (strategy == Strategy::global) return Wavefront::one_rings(graph, threads);
+    std::vector<std::uint8_t> halved = halved_vertices(scales.components.of_vertex, scales.sizes);
+    return std::make_shared<const Wavefront::OneRings>(graph, std::move(halved), false, threads);
   });
-  return one_rings_;
 }
 
 FrontDistances HeatGraph::front(const Source& source, const MapSettings& map, unsigned threads) const {

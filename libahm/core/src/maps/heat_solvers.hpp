@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "ahm/graph/graph_cache.hpp"
 #include "ahm/heat/heat_operators.hpp"
 #include "ahm/maps/cost.hpp"
 #include "ahm/maps/wavefront.hpp"
@@ -34,6 +35,10 @@ class HeatGraph {
   const MapBuilder builder;
 
   GraphSize size() const { return {graph.size(), graph.dimension(), graph.transport_kind()}; }
+  /// Computes what all fronts share, before several threads need it at once.
+  void prepare_fronts(const MapSettings& map, unsigned threads) const {
+    if (map.distances) one_rings(threads);
+  }
   /// Runs a front from the source up to the radius of the map. The result is empty if the map has no distances or those of heat
   /// (`unfolds`).
   /// @throws Cancelled
@@ -42,8 +47,7 @@ class HeatGraph {
  private:
   std::shared_ptr<const Wavefront::OneRings> one_rings(unsigned threads) const;
 
-  mutable std::once_flag once_;
-  mutable std::shared_ptr<const Wavefront::OneRings> one_rings_;
+  GraphCache one_rings_;
 };
 
 /// Solves for maps by marches.

@@ -117,6 +117,7 @@ std::vector<LogMap> LogMapSolver::solve(std::span<const Source> sources, const M
     Offset done = 0;
     const Progress progress = settings.progress;
     progress.step("solve", 0.0);
+    if (count > static_cast<Offset>(block)) heat_graph.prepare_fronts(settings, threads);
     if (count > 1) settings.progress.report = nullptr;  // the blocks report
     detail::parallel_chunks(count, static_cast<Offset>(block), threads, [&](Offset begin, Offset end) {
       const auto first = static_cast<std::size_t>(begin);
