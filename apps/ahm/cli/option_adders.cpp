@@ -239,8 +239,8 @@ CLI::Option* add_method(CLI::App& app, SolveOptions& o, std::vector<Method> meth
              : "";
   if (offers(Method::polar))
     help +=
-        "polar: length and direction of the shortest path, computed by a wavefront; 95 % of the vectors are within a few percent,\n"
-        "no factorization.\n";
+        "polar: length and direction of the shortest path, computed by a wavefront without factorization;\n"
+        "95 % of the vectors are within a few percent.\n";
   help += fmt::format("heat{}: the affine heat method, smooth on noisy surfaces", chosen ? "" : " (default)");
   if (offers(Method::exact))
     help +=

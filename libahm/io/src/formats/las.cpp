@@ -158,7 +158,7 @@ void describe(std::string_view text, std::size_t& at, std::vector<ExtraValue>& v
 /// @param at  offset of the first extra byte; changed to the offset of the first byte without a description
 std::vector<ExtraValue> extra_values(const Input& in, const LasHeader& header, std::size_t& at) {
   constexpr std::size_t head = 54, description = 192, most = 4096;  // most: limits the search for equal names
-  constexpr std::string_view user("LASF_Spec", 10);
+  constexpr std::string_view user("LASF_Spec\0", 10);
   const std::string_view bytes = std::string_view(in.bytes).substr(0, header.begin);
   std::vector<ExtraValue> values;
   std::size_t record = load_at<std::uint16_t>(bytes, 94);
