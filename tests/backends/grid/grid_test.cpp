@@ -29,7 +29,7 @@ TEST(GridFaults, AreNamed) {
       {{.shape = {3, 2}, .spacing = {1, 1}, .blocked = {1, 1}}, "all 2 cells"}};
   for (double spacing : {0.0, -1.0, static_cast<double>(NAN), static_cast<double>(INFINITY), 1e308})
     cases.push_back({{.shape = {5, 5}, .spacing = {1, spacing}}, "axis 1: spacing"});
-  for (const auto& [grid, text] : cases) expect_error<InvalidGeometry>([&] { GridGraph{grid}; }, text);
+  for (const auto& [grid, text] : cases) expect_error<InvalidGeometry>([&, &grid = grid] { GridGraph{grid}; }, text);
   expect_error<ResourceExhausted>([] { GridGraph({.shape = {2000, 2000, 2000}, .spacing = {1, 1, 1}}); }, "coarser");
 }
 
@@ -39,7 +39,8 @@ TEST(GridFaults, OfPointsAndVerticesAreNamed) {
       {{9.9, 20.5}, "coordinate 0, 9.9"}, {{11.0, 22.1}, "coordinate 1, 22.1"},
       {{11.0, NAN}, "coordinate 1"},      {{11.0}, "2 numbers"},
       {{11.5, 20.5}, "obstacle"},         {{11.5, 20.0}, "obstacle"}};
-  for (const auto& [point, text] : points) expect_error<InvalidArgument>([&] { grid.source_at(point); }, text);
+  for (const auto& [point, text] : points)
+    expect_error<InvalidArgument>([&, &point = point] { grid.source_at(point); }, text);
   for (const Vec2& border : {Vec2{11.0, 20.5}, {11.5, 21.0}, {12.0, 21.0}}) EXPECT_NO_THROW(grid.source_at(border));
   expect_error<InvalidArgument>([&] { grid.vertex(std::array<Index, 2>{1, 3}); }, "step 3 along axis 1");
   expect_error<InvalidArgument>([&] { grid.vertex(std::array<Index, 3>{1, 1, 1}); }, "2 numbers");

@@ -191,7 +191,7 @@ TEST(ExactMap, CrossesTheGluedSidesOfOneTriangle) {
   constexpr std::array<Index, 3> tails{0, 1, 1};
   constexpr std::array<exact::Half, 3> twins{2, -1, 0};
   for (double angle : {0.4, 1.0, 2.0, 2.9}) {
-    const std::array<std::array<double, 3>, 1> lengths{{1.0, 2 * std::sin(angle / 2), 1.0}};
+    const std::array<std::array<double, 3>, 1> lengths{{{1.0, 2 * std::sin(angle / 2), 1.0}}};
     const auto cone = PolyhedralSurface::from_lengths({tails, twins}, lengths);
     const auto place = [&](const MeshPoint& p, double turn) {  // of its image turned around the apex
       const auto& [apex, first, second] = p.barycentric;
