@@ -80,7 +80,7 @@ trimesh::TriangleMeshSurface square_surface() {
 }
 
 TEST(AllocationsFail, WhileAMeshIsBuiltFactoredSolvedAndWritten) {
-  const Folder folder;
+  const Folder folder{};
   const Mesh mesh = flat_square(5);
   const std::string file = folder.write("map.csv", "precious\n");
   const Work work = [&] {
@@ -149,7 +149,7 @@ TEST(AllocationsFail, WhilePolygonsAreBuilt) {
 }
 
 TEST(AllocationsFail, WhileLocalMapsAreMadeAndWritten) {
-  const Folder folder;
+  const Folder folder{};
   const auto surface = square_surface();
   LocalMapOptions options{.radius = 0.5};
   options.heat.threads = 1;
@@ -178,7 +178,7 @@ TEST(AllocationsFail, WhileWindowsAreTraced) {
 }
 
 TEST(AllocationsFail, WhileFilesAreRead) {
-  const Folder folder;
+  const Folder folder{};
   const Mesh mesh = flat_square(3);
   io::Table table{"points"};
   table.add({"x", "y", "z"}, mesh.positions);

@@ -68,7 +68,7 @@ int outcome_of(const Writer& writer, const std::filesystem::path& path) try {
 
 TEST(WritesFail, WhereFilesMayNotGrow) {
   for (const Writer& writer : all_writers()) {
-    const Folder folder;
+    const Folder folder{};
     const auto path = folder.path(writer.name);
     writer.write(path);
     const auto size = std::filesystem::file_size(path);
@@ -91,7 +91,7 @@ TEST(WritesFail, WhereFilesMayNotGrow) {
 }
 
 TEST(WritesFail, WhereTheFolderIsMissingOrTheNameIsAFolder) {
-  const Folder folder;
+  const Folder folder{};
   for (const Writer& writer : all_writers()) {
     EXPECT_EQ(outcome_of(writer, folder.path("absent") / writer.name), refused) << writer.name;
     std::filesystem::create_directory(folder.path(writer.name));
@@ -101,7 +101,7 @@ TEST(WritesFail, WhereTheFolderIsMissingOrTheNameIsAFolder) {
 }
 
 TEST(WritesFail, WhereTheFolderIsReadOnly) {
-  const Folder folder;
+  const Folder folder{};
   std::filesystem::permissions(folder.path(), std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
   const bool is_root = ::access(folder.path().c_str(), W_OK) == 0;  // root may write everywhere
   for (const Writer& writer : all_writers())
@@ -114,7 +114,7 @@ TEST(WritesFail, WhereTheFolderIsReadOnly) {
 TEST(WritesFail, WhereTheDiskIsFull) {
   for (const Writer& writer : all_writers()) {
     if (writer.name == "a.npz" || writer.name == "a.obj") continue;  // no devices; several files
-    const Folder folder;
+    const Folder folder{};
     std::filesystem::create_symlink("/dev/full", folder.path(writer.name));
     EXPECT_EQ(outcome_of(writer, folder.path(writer.name)), refused) << writer.name;
     EXPECT_EQ(folder.files(), 1U);

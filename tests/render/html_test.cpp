@@ -58,7 +58,7 @@ class Html : public testing::Test {
     return read(folder / "page.html");
   }
 
-  const Folder folder;
+  const Folder folder{};
   Patch mesh{10, true}, cloud{10, false};  // 121 points, 100 faces
   Scene scene = mesh.scene();
 };

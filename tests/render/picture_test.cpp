@@ -14,13 +14,13 @@ std::vector<std::string> names() {
 }
 
 void expect_written(const Scene& scene, const PictureOptions& options = {}) {
-  const Folder folder;
+  const Folder folder{};
   for (const std::string& name : names()) EXPECT_NO_THROW(write_picture(folder / name, scene, options)) << name;
 }
 
 template <class Exception>
 void expect_refused(const Scene& scene, const PictureOptions& options = {}) {
-  const Folder folder;
+  const Folder folder{};
   for (const std::string& name : names()) EXPECT_THROW(write_picture(folder / name, scene, options), Exception) << name;
   EXPECT_EQ(folder.files(), 0U);
 }
@@ -28,7 +28,7 @@ void expect_refused(const Scene& scene, const PictureOptions& options = {}) {
 class Picture : public testing::Test {
  protected:
   Patch patch{4, true};
-  const Folder folder;
+  const Folder folder{};
 };
 
 TEST_F(Picture, TheExtensionDeterminesTheFormat) {

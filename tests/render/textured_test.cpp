@@ -50,7 +50,7 @@ class TexturedPicture : public testing::Test {
     return Pixels(io::read_image(file));
   }
 
-  const Folder folder;
+  const Folder folder{};
   const std::filesystem::path file = folder / "picture.png";
 };
 
