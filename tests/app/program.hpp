@@ -32,7 +32,7 @@ class InFolder : public testing::Test {
   TemporaryFolder folder_;
 };
 
-/// The same, skipped in builds that cannot read and write images.
+/// A test in an empty folder (`InFolder`). Skipped in builds that cannot read and write images.
 class InFolderWithImages : public InFolder {
  protected:
   void SetUp() override;

@@ -70,7 +70,7 @@ std::string quality_as_text(const std::vector<double>& distances, const std::vec
     if (!std::isnan(quality[i])) farthest = std::max(farthest, distances[i]);
   const std::optional<double> reliable = reliable_distance(distances, quality);
   if (!reliable) return fmt::format("not reliable ({})", share);
-  if (*reliable == farthest) return fmt::format("reliable everywhere ({})", share);
+  if (*reliable == farthest) return fmt::format("reliable up to the farthest vertex ({})", share);
   return fmt::format("reliable up to distance {:.4g} of {:.4g} ({})", *reliable, farthest, share);
 }
 

@@ -1,5 +1,6 @@
 /// \file
-/// Edges of the graph: unfolding from one tangent plane to another, and transports. Creases keep their length, and noise across
+/// Edges of the graph: unfolding from one tangent plane to another, and the transports R of the connection Laplacian, whose
+/// weights are those of `tufted_laplacian`. Creases keep their length, and noise across
 /// the surface adds none.
 #pragma once
 

@@ -198,7 +198,7 @@ std::span<const Index> before_gap(std::span<const Vec3> points, Index i, std::sp
   return neighbors;
 }
 
-/// Of the `counts[i]` neighbors at i * k, keeps those with a neighborhood that reaches point i. Updates the radius.
+/// Keeps only those of the `counts[i]` neighbors at i * k whose neighborhoods reach point i. Updates the radius.
 /// @return whether all were kept
 bool drop_unreachable(const CleanPoints& cloud, const CloudOptions& options, std::vector<Index>& counts,
                       Neighborhoods& result) {

@@ -18,6 +18,7 @@ struct WeightedEdges {
 /// Glues two copies of every triangle into a manifold without boundary, mollifies its edge lengths, flips it to an intrinsic
 /// Delaunay triangulation, and sums its cotangent weights over the two copies. Sums parallel edges and drops loops. Fills
 /// `flips` and `mollification` (in units of the clean points, the largest of the parts) of the report.
+/// Its result contains the weights w of the connection Laplacian of clouds; `tangent_edges` adds the transports.
 WeightedEdges tufted_laplacian(const CleanPoints& cloud, const TangentPlanes& planes,
                                const std::vector<Triangle>& triangles, const CloudParts& parts, unsigned threads,
                                CloudDetails& report);

@@ -174,7 +174,7 @@ TEST(SphereCloud, ConvergesOnRandomPointsInBothVariants) {
   }
 }
 
-// Of points farther than five spacings, including the antipode.
+// Errors of the points farther than five spacings from the source, including the antipode.
 TEST(SphereCloud, HasItsDistancesOutToTheAntipode) {
   std::vector<double> errors95;
   for (Index n : {2500, 20000}) {

@@ -196,7 +196,7 @@ class Wavefront::OneRings::Halving {
   Offset next(Offset c) const { return c + 1 < stars_.begin_[start_[c] + 1] ? c + 1 : stars_.begin_[start_[c]]; }
   Offset previous(Offset c) const { return c > stars_.begin_[start_[c]] ? c - 1 : stars_.begin_[start_[c] + 1] - 1; }
 
-  /// The same edge from its other end; -1 if it is not unique.
+  /// Corner of the edge of corner c at its other end; -1 if it is not unique.
   Offset find_twin(Offset c) const {
     const Corner& edge = corners_[c];
     Offset found = -1;

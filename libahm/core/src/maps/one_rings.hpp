@@ -86,7 +86,7 @@ inline constexpr Index most_halved = 10000;
 /// @param component  component of each vertex
 /// @param sizes      number of vertices of each component
 std::vector<std::uint8_t> halved_vertices(std::span<const Index> component, std::span<const Index> sizes);
-/// The same from the graph. Empty if it is not a Delaunay triangulation.
+/// For each vertex of a graph whether its component is small; empty if the graph is not a Delaunay triangulation.
 std::vector<std::uint8_t> halved_vertices(const TangentGraph& graph);
 
 }  // namespace ahm

@@ -61,7 +61,8 @@ class ReferenceFront {
   std::optional<Wavefront> front_;
 };
 
-/// The same quality, with a front that was computed before. @param front  made with the source and the radius of the map
+/// Quality of each vertex as above, with a front computed before.
+/// @param front  made with the source and the radius of the map
 std::vector<double> map_quality(const TangentGraph& graph, const LogMap& map, const ReferenceFront& front,
                                 unsigned threads = 0);
 
