@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <sstream>
 
 #include "program.hpp"
@@ -103,6 +104,19 @@ TEST_F(OutputFiles, AreAllWrittenOrNone) {
 }
 
 // The work of an hour must not depend on a reader of the summary.
+TEST_F(OutputFiles, AreWrittenThoughThePictureFails) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full";
+  const std::string map = alone("plane.xyz -s 3");
+  std::filesystem::create_symlink("/dev/full", "full.png");
+  const Outcome outcome = run("logmap plane.xyz -s 3 -o map.csv --view full.png --json map.json");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_TRUE(has(outcome.err, "--view full.png"));
+  EXPECT_EQ(read_text("map.csv"), map);
+  const auto summary = nlohmann::json::parse(read_text("map.json"));
+  EXPECT_TRUE(summary.at("failed").contains("view"));
+  EXPECT_FALSE(summary.contains("view"));
+}
+
 TEST_F(OutputFiles, AreWrittenThoughNobodyReadsTheSummary) {
   Running running = start("logmap plane.xyz -s 0 -o map.csv");
   ::close(running.out);
