@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import Any, List, Optional, Sequence, SupportsIndex, Tuple, Union
 
 import numpy as np
@@ -34,6 +35,10 @@ class OnSurface:
     def __repr__(self) -> str:
         return f"<ahm.potpourri3d.{type(self).__name__}: on {self.surface!r}>"
 
+    @cached_property
+    def _edges(self) -> np.ndarray:
+        return edges_and_sides(np.asarray(self.surface.faces))[0]  # type: ignore[attr-defined]
+
     def _point(self, value: Any, name: str) -> Source:
         """A point of a curve in the form that `ahm` accepts."""
         if places.is_row(value):
@@ -43,8 +48,7 @@ class OnSurface:
         if len(given) == 0:
             return self._row(index, name)
         if len(given) == 1:
-            all_edges = edges_and_sides(np.asarray(self.surface.faces))[0]  # type: ignore[attr-defined]
-            return tuple(all_edges[arguments.integer(index, name, 0, len(all_edges) - 1)]), float(given[0])
+            return tuple(self._edges[arguments.integer(index, name, 0, len(self._edges) - 1)]), float(given[0])
         return index, given if len(given) > 2 else np.append(given, 1 - given.sum())
 
     def _curves(self, curves: Any) -> List[List[Source]]:

@@ -1,5 +1,4 @@
 // Parallel transport, extension of scalars, distances and curvature, by rows.
-#include <cmath>
 #include <utility>
 
 #include "ahm/error.hpp"
@@ -135,7 +134,7 @@ py::tuple front_distance(const BodyPtr& body, const py::tuple& sources, double r
   auto found = compute(report, py::none(), [=](const Progress& progress) {
     progress.step("front", 0);
     const TangentGraph& graph = body->graph();
-    Wavefront front(graph, std::isfinite(radius) ? nullptr : Wavefront::one_rings(graph, 0));
+    Wavefront front(graph, Wavefront::one_rings_within(graph, radius, 0));
     for (const SurfaceSource& source : body->sources(at)) front.add(source.source);
     front.run(radius);
     progress.step("front", 1);

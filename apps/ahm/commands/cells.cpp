@@ -151,7 +151,7 @@ void report(const CellsOptions& options, const Input& input, const std::vector<I
   const std::size_t shown = std::min<std::size_t>(rows.size(), 12);
   const std::string text =
       fmt::format("{} around {} {}{}\nareas {:.4g} to {:.4g}, farthest point {:.6g} from its source\n",
-                  counted(rows.size(), "cell"), rows.size() == 1 ? "vertex" : "vertices",
+                  counted(rows.size(), "cell"), noun_after(rows.size(), "vertex"),
                   fmt::join(rows.begin(), rows.begin() + static_cast<std::ptrdiff_t>(shown), " "),
                   shown < rows.size() ? " ..." : "", smallest->area, largest->area, farthest);
   deliver(std::move(j), text, options.output, journal);

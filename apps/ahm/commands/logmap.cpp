@@ -115,7 +115,7 @@ nlohmann::ordered_json factor_as_json(const FactorStatistics& s) {
           {"bytes", s.bytes}};
 }
 
-nlohmann::ordered_json as_json(const LogmapRun& run, const OutputOptions& output) {
+nlohmann::ordered_json as_json(const LogmapRun& run, const OutputOptions& output, std::optional<double> reliable) {
   nlohmann::ordered_json j = summary("ahm logmap", run.path, output, run.input);
   j["input"]["normals"] = !run.input.geometry.normals.empty();
   j["n"] = run.rows.status.size();
@@ -129,9 +129,7 @@ nlohmann::ordered_json as_json(const LogmapRun& run, const OutputOptions& output
   j["mean_edge_length"] = run.input.mean_edge_length();
   j["largest_distance"] = largest_distance(run.rows);
   for (Status s : all_statuses) j["status"][std::string(to_string(s))] = count(run.rows, s);
-  j["low_quality"] = count_low_quality(run.quality);
-  const std::optional<double> reliable = reliable_distance(run.rows.distance, run.quality);
-  j["reliable_distance"] = reliable ? nlohmann::ordered_json(*reliable) : nlohmann::ordered_json(nullptr);
+  add_quality(j, run.quality, reliable);
   if (!run.rows.bounded.empty()) j["bounded"] = std::ranges::count(run.rows.bounded, 1);
   if (!run.rows.error_estimate.empty()) j["median_error_estimate"] = median(run.rows.error_estimate);
   j["source"] = source_as_json(run);
@@ -143,7 +141,7 @@ nlohmann::ordered_json as_json(const LogmapRun& run, const OutputOptions& output
   return j;
 }
 
-std::string as_text(const LogmapRun& run) {
+std::string as_text(const LogmapRun& run, std::optional<double> reliable) {
   std::string text = run.is_named ? fmt::format("{}, source {}: ", run.path, to_string(run.spec)) : "";
   text += counted(run.rows.status.size(), "vertex");
   for (Status s : all_statuses)
@@ -153,7 +151,7 @@ std::string as_text(const LogmapRun& run) {
   text += fmt::format("\nsource {} at {:.6g} {:.6g} {:.6g}, largest distance {:.6g}, mean edge length {:.4g}\n",
                       run.source.row ? fmt::format("{}", run.source.row->index) : to_string(run.spec), p[0], p[1], p[2],
                       largest_distance(run.rows), run.input.mean_edge_length());
-  text += quality_as_text(run.rows.distance, run.quality);
+  text += quality_as_text(run.rows.distance, run.quality, reliable);
   if (!run.rows.error_estimate.empty())
     text += fmt::format(", median error of (u, v) about {:.2g}", median(run.rows.error_estimate));
   if (const auto bounded = std::ranges::count(run.rows.bounded, 1); bounded > 0)
@@ -164,7 +162,8 @@ std::string as_text(const LogmapRun& run) {
 }  // namespace
 
 void report(const LogmapRun& run, const OutputOptions& output, Journal& journal) {
-  deliver(as_json(run, output), as_text(run), output, journal, {{"versions", versions()}});
+  const std::optional<double> reliable = reliable_distance(run.rows.distance, run.quality);
+  deliver(as_json(run, output, reliable), as_text(run, reliable), output, journal, {{"versions", versions()}});
 }
 
 namespace {
@@ -443,7 +442,7 @@ void run(const LogmapCommand& command) {
     attempt(maps.front().input.path, count == 1, [&] { failed_here = run_log_maps(maps, count == 1); });
     failed += failed_here;
   }
-  if (failed > 0) throw Error(fmt::format("{} of {} maps failed", failed, count));
+  if (failed > 0) throw Error(fmt::format("{} of {} failed", failed, counted(count, "map")));
 }
 
 void offer_method(CLI::App& app, LogmapOptions& o) {

@@ -138,14 +138,13 @@ void report(const StrokeCommandOptions& options, const Input& input, const Surfa
   j["n"] = rows.status.size();
   j["mapped"] = mapped;
   j["largest_distance"] = farthest;
-  j["low_quality"] = count_low_quality(quality);
   const std::optional<double> reliable = reliable_distance(rows.distance, quality);
-  j["reliable_distance"] = reliable ? nlohmann::ordered_json(*reliable) : nlohmann::ordered_json(nullptr);
+  add_quality(j, quality, reliable);
   const std::string text = fmt::format(
       "{} curve of {}, length {:.6g}, at most {:.2g} off the surface\n"
       "vertices mapped: {} of {}, up to {:.6g} from the curve\n{}\n",
       options.shape.closed ? "closed" : "open", counted(curve.samples.size(), "piece"), curve.length, curve.gap, mapped,
-      rows.status.size(), farthest, quality_as_text(rows.distance, quality));
+      rows.status.size(), farthest, quality_as_text(rows.distance, quality, reliable));
   deliver(std::move(j), text, options.output, journal);
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <new>
+#include <nlohmann/json.hpp>
 
 #include "ahm/error.hpp"
 #include "ahm/io/formats.hpp"
@@ -60,7 +61,13 @@ std::ptrdiff_t count_low_quality(const std::vector<double>& quality) {
   return std::count_if(quality.begin(), quality.end(), [](double q) { return q < reliable_quality; });
 }
 
-std::string quality_as_text(const std::vector<double>& distances, const std::vector<double>& quality) {
+void add_quality(nlohmann::ordered_json& summary, const std::vector<double>& quality, std::optional<double> reliable) {
+  summary["low_quality"] = count_low_quality(quality);
+  summary["reliable_distance"] = reliable ? nlohmann::ordered_json(*reliable) : nlohmann::ordered_json(nullptr);
+}
+
+std::string quality_as_text(const std::vector<double>& distances, const std::vector<double>& quality,
+                            std::optional<double> reliable) {
   const auto mapped = static_cast<double>(count_mapped(quality));
   const std::string share =
       fmt::format("quality above {} at {:.2f} % of the mapped vertices", reliable_quality,
@@ -68,7 +75,6 @@ std::string quality_as_text(const std::vector<double>& distances, const std::vec
   double farthest = 0;
   for (std::size_t i = 0; i < quality.size(); ++i)
     if (!std::isnan(quality[i])) farthest = std::max(farthest, distances[i]);
-  const std::optional<double> reliable = reliable_distance(distances, quality);
   if (!reliable) return fmt::format("not reliable ({})", share);
   if (*reliable == farthest) return fmt::format("reliable up to the farthest vertex ({})", share);
   return fmt::format("reliable up to distance {:.4g} of {:.4g} ({})", *reliable, farthest, share);

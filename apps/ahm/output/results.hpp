@@ -5,6 +5,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,7 +30,11 @@ std::ptrdiff_t count_low_quality(const std::vector<double>& quality);
 
 /// Up to which distance the map is reliable, and the share of the mapped rows with a quality above `reliable_quality`, as text: "reliable up
 /// to distance 2.71 of 3.11 (quality above 0.5 at 91.63 % of the mapped vertices)".
-std::string quality_as_text(const std::vector<double>& distances, const std::vector<double>& quality);
+/// @param reliable  `reliable_distance`
+std::string quality_as_text(const std::vector<double>& distances, const std::vector<double>& quality,
+                            std::optional<double> reliable);
+/// Adds low_quality, the number of such rows, and reliable_distance (null: none) to a summary.
+void add_quality(nlohmann::ordered_json& summary, const std::vector<double>& quality, std::optional<double> reliable);
 
 /// Warns if more than a fifth of the mapped rows have a quality below `reliable_quality`.
 /// @param quality  quality of each row; NaN: not mapped

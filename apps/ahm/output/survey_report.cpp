@@ -120,9 +120,9 @@ std::string repair_text(const RepairSurvey& repair, const TopologyReport& t) {
   const RepairCounts& c = repair.counts;
   if (!c.any() && t.non_manifold_edges == 0 && t.non_manifold_vertices == 0) return "nothing to do";
   const auto faces = [](Index count, const char* before, const char* after) {
-    return fmt::format("{}{} {}", before, count == 1 ? "face" : "faces", after);
+    return fmt::format("{}{} {}", before, noun_after(count, "face"), after);
   };
-  const std::string done = counts_text({{c.welded, c.welded == 1 ? "vertex joined" : "vertices joined"},
+  const std::string done = counts_text({{c.welded, noun_after(c.welded, "vertex") + " joined"},
                                         {c.shortened, faces(c.shortened, "", "shortened (repeated corners)")},
                                         {c.degenerate, faces(c.degenerate, "degenerate ", "dropped")},
                                         {c.not_finite, faces(c.not_finite, "", "with non-finite vertices dropped")},

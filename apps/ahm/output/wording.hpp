@@ -13,7 +13,7 @@
 
 namespace ahm::app {
 
-using detail::counted;
+using detail::counted, detail::noun_after;
 
 /// The message of an error. The program's options replace the remedy of the library, which names arguments of its functions.
 std::string worded(const Error& error);

@@ -80,11 +80,11 @@ json point_as_json(const SurfacePoint& point) {
 }
 
 /// A number with thousands separators, and a noun: "1,234 points".
-std::string counted(std::size_t n, const char* what) {
+std::string counted(std::size_t n, const char* noun) {
   std::string digits = std::to_string(n);
   for (auto k = static_cast<std::ptrdiff_t>(digits.size()) - 3; k > 0; k -= 3)
     digits.insert(static_cast<std::size_t>(k), ",");
-  return digits + " " + what;
+  return digits + " " + detail::noun_after(n, noun);
 }
 
 }  // namespace
@@ -94,7 +94,7 @@ json session_info(const Surface& surface, const io::Geometry& geometry, const Se
   json variants = json::array();
   for (const Variant variant : all_variants) variants.push_back(to_string(variant));
   const Settings& usual = options.settings;
-  json info = {{"about", faces > 0 ? counted(rows, "vertices, ") + counted(faces, "faces") : counted(rows, "points")},
+  json info = {{"about", faces > 0 ? counted(rows, "vertex") + ", " + counted(faces, "face") : counted(rows, "point")},
                {"has_faces", faces > 0},
                {"variants", variants},
                {"formats", options.formats},

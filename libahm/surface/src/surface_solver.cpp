@@ -178,7 +178,7 @@ std::vector<double> SurfaceSolver::distance(const std::vector<Location>& sources
     return by_row(surface().rows(), [&](Vertex v) { return map.distance(v); });
   }
   const TangentGraph& graph = surface().graph();
-  Wavefront front(graph, std::isfinite(options.radius) ? nullptr : Wavefront::one_rings(graph, 0));
+  Wavefront front(graph, Wavefront::one_rings_within(graph, options.radius, 0));
   for (const Location& source : sources) front.add(surface().source(source.on(surface())).source);
   options.progress.step("distance", 0);
   front.run(options.radius, options.progress.stop);

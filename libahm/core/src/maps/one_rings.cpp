@@ -369,4 +369,9 @@ std::shared_ptr<const Wavefront::OneRings> Wavefront::one_rings(const TangentGra
                               make);
 }
 
+std::shared_ptr<const Wavefront::OneRings> Wavefront::one_rings_within(const TangentGraph& graph, double radius,
+                                                                       unsigned threads) {
+  return std::isfinite(radius) ? nullptr : one_rings(graph, threads);
+}
+
 }  // namespace ahm

@@ -134,7 +134,7 @@ std::optional<double> reliable_distance(std::span<const double> distances, std::
 ReferenceFront::ReferenceFront(const TangentGraph& graph, const Source& source, double radius,
                                const std::stop_token& stop) {
   if (graph.is_delaunay()) return;
-  front_.emplace(graph, std::isfinite(radius) ? nullptr : Wavefront::one_rings(graph), true);
+  front_.emplace(graph, Wavefront::one_rings_within(graph, radius), true);
   front_->add(source);
   front_->run(reach * radius, stop);
 }

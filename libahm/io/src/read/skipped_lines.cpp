@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "ahm/util/text.hpp"
 #include "read/input.hpp"
 
 namespace ahm::io {
@@ -33,8 +34,8 @@ void SkippedLines::report(std::vector<Warning>& warnings) const {
 
 std::string SkippedLines::hint() const {
   if (count_ == 0) return {};
-  return "; not understood: " + std::to_string(count_) + (count_ == 1 ? " line" : " lines") + ", the first is line " +
-         std::to_string(first_) + ": " + text_;
+  return "; not understood: " + detail::counted(count_, "line") + ", the first is line " + std::to_string(first_) +
+         ": " + text_;
 }
 
 }  // namespace ahm::io

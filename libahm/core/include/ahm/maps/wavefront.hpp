@@ -51,6 +51,9 @@ class Wavefront {
   /// @param midpoints  whether to cut the triangles of small components at the midpoints of their sides
   static std::shared_ptr<const OneRings> one_rings(const TangentGraph& graph, unsigned threads = 1,
                                                    bool midpoints = true);
+  /// The one-rings for one front up to a radius. Null if the radius is finite: the front then needs few of them, and computes those itself.
+  static std::shared_ptr<const OneRings> one_rings_within(const TangentGraph& graph, double radius,
+                                                          unsigned threads = 1);
 
   /// @param graph       must outlive the front
   /// @param one_rings   one-rings of this graph; null: the front computes them vertex by vertex

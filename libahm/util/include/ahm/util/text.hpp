@@ -35,11 +35,16 @@ inline std::string singular(std::string_view verb) {
                           : std::string(verb) + "s";
 }
 
+/// The form of a noun after a count: "face" after 1, otherwise "faces".
+std::string noun_after(std::integral auto count, std::string_view noun) {
+  return count == 1 ? std::string(noun) : plural(noun);
+}
+
 /// A count with its noun, and optionally a verb: "1 face", "2 faces", "1 face is", "2 faces are".
 /// @param noun  in the singular
 /// @param verb  in the plural
 std::string counted(std::integral auto count, std::string_view noun, std::string_view verb = {}) {
-  std::string text = std::to_string(count) + " " + (count == 1 ? std::string(noun) : plural(noun));
+  std::string text = std::to_string(count) + " " + noun_after(count, noun);
   if (!verb.empty()) text += " " + (count == 1 ? singular(verb) : std::string(verb));
   return text;
 }
