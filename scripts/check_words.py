@@ -12,7 +12,7 @@ import sys
 import tokenize
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
-SUFFIXES = {".md", ".hpp", ".cpp", ".py", ".js"}
+SUFFIXES = {".md", ".hpp", ".cpp", ".py", ".js", ".sh", ".cmake", ".txt"}
 
 
 def rules():
@@ -55,7 +55,15 @@ def python_source(text):
                     yield number, line, token.type == tokenize.STRING
 
 
-READERS = {".md": page, ".py": python_source}
+def script(text):
+    """Comments that fill a line, or follow two blanks."""
+    for number, line in enumerate(text.splitlines(), 1):
+        comment = re.search(r"(?:^\s*|  )#\s(.*)", line)
+        if comment:
+            yield number, re.sub(r"`[^`\n]*`", "``", comment.group(1)), False
+
+
+READERS = {".md": page, ".py": python_source, ".sh": script, ".cmake": script, ".txt": script}
 
 
 def findings(names):
@@ -76,6 +84,7 @@ def main():
     if not names:
         listed = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True, check=True)
         names = list(filter(None, listed.stdout.split("\0")))
+        names.remove("scripts/banned_words.txt")
     found = list(findings(names))
     print("\n".join(found))
     if found:

@@ -121,12 +121,12 @@ void give_up(const std::shared_ptr<Job>& job) {
 }
 
 /// Lists a job in `Jobs::waited_for` while a thread waits for it.
-class Waiting {
+class ListedAsWaiting {
  public:
-  explicit Waiting(const std::shared_ptr<Job>& job) : job_(job) { jobs().waited_for.push_back(job); }
-  ~Waiting() { std::erase(jobs().waited_for, job_); }
-  Waiting(const Waiting&) = delete;
-  Waiting& operator=(const Waiting&) = delete;
+  explicit ListedAsWaiting(const std::shared_ptr<Job>& job) : job_(job) { jobs().waited_for.push_back(job); }
+  ~ListedAsWaiting() { std::erase(jobs().waited_for, job_); }
+  ListedAsWaiting(const ListedAsWaiting&) = delete;
+  ListedAsWaiting& operator=(const ListedAsWaiting&) = delete;
 
  private:
   const std::shared_ptr<Job>& job_;
@@ -138,7 +138,7 @@ void run(const py::object& report, py::object keep, std::function<void(const Pro
   std::erase_if(jobs().background, [](const auto& job) { return job->done(); });
   const auto job = std::make_shared<Job>(std::move(keep), std::move(work), !report.is_none());
   try {
-    const Waiting waiting(job);
+    const ListedAsWaiting listed(job);
     for (bool done = false; !done;) {
       done = job->wait(between_signals);
       if (PyErr_CheckSignals() != 0) throw py::error_already_set();

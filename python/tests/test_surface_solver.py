@@ -10,20 +10,22 @@ import pytest
 
 import ahm
 
-HEADER = Path(__file__).parents[2] / "libahm/surface/include/ahm/surface/surface_solver.hpp"
-CPP_VALUES = {"{}": None, "std::numeric_limits<double>::infinity()": None, "true": True, "false": False, "0": 0}
+ROOT = Path(__file__).parents[2]
+HEADER = ROOT / "libahm/surface/include/ahm/surface/surface_solver.hpp"
+LOCAL_MAPS = ROOT / "libahm/core/include/ahm/maps/local_maps.hpp"
+CPP_VALUES = {"{}": None, "std::numeric_limits<double>::infinity()": None, "true": True, "false": False, "0": 0, "2": 2}
 ON_MAPS = {"quality", "at"}  # in Python `LogMap.quality` and `LogMap.sample`
 
 
-def block(kind, name):
-    """The body of a class or struct of the header, without comments."""
-    text = re.sub(r"//[^\n]*", "", HEADER.read_text())
+def block(kind, name, header=HEADER):
+    """The body of a class or struct of a header, without comments."""
+    text = re.sub(r"//[^\n]*", "", header.read_text())
     return re.search(rf"^{kind} {name}\b[^;{{]*\{{(.*?)^\}};", text, re.M | re.S)[1]
 
 
-def fields(name):
+def fields(name, header=HEADER):
     """Fields of a struct with their defaults in Python."""
-    found = re.findall(r"(\w+)\s*=\s*([^;]*);", block("struct", name))
+    found = re.findall(r"(\w+)\s*=\s*([^;]*);", block("struct", name, header))
     return {field: CPP_VALUES[value.strip()] for field, value in found}
 
 
@@ -42,6 +44,19 @@ def test_options_and_defaults_are_those_of_cpp():
     for function in (ahm.SurfaceSolver.log_map, ahm.SurfaceSolver.log_maps):
         assert keywords(function) == {**fields("SurfaceMapOptions"), "progress": None}
     assert keywords(ahm.SurfaceSolver.distance) == {**fields("SurfaceDistanceOptions"), "progress": None}
+
+
+def test_arguments_of_lines_and_local_maps_are_those_of_cpp():
+    public = block("class", "SurfaceSolver").split("private:")[0]
+    for name, optional in (("path", set()), ("trace", {"length"})):  # in Python the length may be that of the direction
+        cpp = re.search(rf"\b{name}\(([^)]*)\) const", public)[1]
+        python = inspect.signature(getattr(ahm.SurfaceSolver, name)).parameters.values()
+        given = [p for p in python if p.name != "self" and p.kind is p.POSITIONAL_OR_KEYWORD]
+        assert [p.name for p in given] == [argument.split()[-1] for argument in cpp.split(",")]
+        assert {p.name for p in given if p.default is not p.empty} == optional
+    python = inspect.signature(ahm.SurfaceSolver.local_maps).parameters
+    cpp = fields("LocalMapOptions", LOCAL_MAPS)
+    assert {name: python[name].default or 0 for name in ("radius", "k", "margin")} == {name: cpp[name] for name in ("radius", "k", "margin")}
 
 
 @pytest.fixture(scope="module")

@@ -1,4 +1,4 @@
-# Fails when a folder includes what stands above or beside it, or when a library is included outside its place.
+# Fails when a folder includes what is above it or at its level, or when a library is included outside its place.
 function(forbid folder pattern why)
   file(GLOB_RECURSE files "${ROOT}/${folder}/*.cpp" "${ROOT}/${folder}/*.hpp")
   foreach(file IN LISTS files)

@@ -106,11 +106,11 @@ TEST_F(Html, ContainsEveryPointAndFace) {
 TEST_F(Html, ContainsValuesOfThePointUnderThePointer) {
   const std::vector<double> distance(121, 2.0), spread(121, 0.5);
   const std::vector<Status> status(121, Status::ok);
-  scene.told = {distance, spread, status, "face:7:0.2,0.3,0.5"};
+  scene.details = {distance, spread, status, "face:7:0.2,0.3,0.5"};
   const auto map = bundle(page(scene), "map_data");
   expect_counts(map, {{"distance", 121}, {"spread", 121}, {"status", 121}});
   EXPECT_EQ(map["spec"], "face:7:0.2,0.3,0.5");
-  scene.told.spread = std::span(spread).first(7);
+  scene.details.spread = std::span(spread).first(7);
   EXPECT_THROW(page(scene), InvalidArgument);
 }
 

@@ -116,7 +116,7 @@ TEST(MeshRepair, MakesOnlyTheRequestedRepairs) {
   const RepairedMesh repaired = repair(mesh, {});
   EXPECT_EQ(repaired.counts, RepairCounts{});
   EXPECT_EQ(repaired.face_vertices, mesh.corners);
-  EXPECT_EQ(repair(polygons(moebius_mesh(20, 3)), {.orient = true}).counts.turned, 0);  // it has no orientation
+  EXPECT_EQ(repair(polygons(moebius_mesh(20, 3)), {.orient = true}).counts.reversed, 0);  // it has no orientation
 }
 
 TEST(MeshRepair, ATornMeshMapsAsTheWholeMesh) {
@@ -163,7 +163,7 @@ TEST(MeshRepair, DropsDegenerateAndDuplicateFaces) {
   mesh.add({second[1], second[0], second[2]});
   mesh.add({first[0], first[0], first[1], first[2], first[0]});
   const RepairedMesh repaired = repair(mesh);
-  EXPECT_EQ(repaired.counts, (RepairCounts{.shortened = 1, .degenerate = 2, .not_finite = 1, .duplicates = 2}));
+  EXPECT_EQ(repaired.counts, (RepairCounts{.repeated_corners = 1, .degenerate = 2, .not_finite = 1, .duplicates = 2}));
   EXPECT_EQ(repaired.given_face.size(), static_cast<std::size_t>(sound));
   EXPECT_EQ(repaired.remaining(sound - 1), sound - 1);
   EXPECT_EQ(repaired.remaining(sound), std::nullopt);
@@ -176,7 +176,7 @@ TEST(MeshRepair, RemovesRepeatedCornersOfPolygons) {
   mesh.add({0, 1, 1, 2, 3});
   mesh.add({1, 4, 5, 2});
   const RepairedMesh repaired = repair(mesh);
-  EXPECT_EQ(repaired.counts, RepairCounts{.shortened = 1});
+  EXPECT_EQ(repaired.counts, RepairCounts{.repeated_corners = 1});
   EXPECT_EQ(surface_of(Polygons{mesh.positions, repaired.face_begin, repaired.face_vertices, {}}).faces().size(), 2U);
 }
 

@@ -48,7 +48,7 @@ json from_row(int row, const json& more = json::object()) {
 json path_between(int from, int to) { return {{"from", at_row(from)}, {"to", at_row(to)}}; }
 json stroke_between(int from, int to) { return {{"points", {at_row(from), at_row(to)}}}; }
 json tool_path(double radius, double spacing, const char* pattern) {
-  return {{"cover", radius}, {"spacing", spacing}, {"pattern", pattern}};
+  return {{"coverage_radius", radius}, {"spacing", spacing}, {"pattern", pattern}};
 }
 
 /// The same values in single precision.

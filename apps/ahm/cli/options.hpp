@@ -39,7 +39,7 @@ struct InputOptions {
   std::string non_manifold = "error";   ///< error, split
   std::string discretization = "auto";  ///< of polygon meshes: auto, polygons, refined
   RepairOptions repair;
-  std::vector<std::uint8_t> turned;  ///< with --local: `trimesh::MeshOptions::turned`
+  std::vector<std::uint8_t> counts_as_reversed;  ///< with --local: `trimesh::MeshOptions::counts_as_reversed`
 };
 
 /// Options of the computation of maps.

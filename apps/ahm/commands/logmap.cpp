@@ -178,7 +178,7 @@ void write_results(const LogmapOptions& options, const SurfaceSource& source, co
   add_map(table, rows, quality);
   if (!away.empty()) table.add({"gx", "gy", "gz"}, away);
   render::Scene scene = results.scene(rows, quality, source);
-  scene.told.source = to_string(options.source.spec);
+  scene.details.source = to_string(options.source.spec);
   results.write(table, scene, journal);
 }
 
@@ -324,9 +324,9 @@ constexpr const char* logmap_footer =
     "Each INPUT file is mapped from each source (--source, which can be repeated, and --sources).\n"
     "\n"
     "SPEC is one of\n"
-    "  123              a vertex of INPUT, counted from 0\n"
-    "  1.5,0,-2         the vertex nearest to this position\n"
-    "  face:7:.2,.3,.5  a point in face 7 in barycentric coordinates, one per corner (meshes)\n"
+    "  123                 a vertex of INPUT, counted from 0\n"
+    "  1.5,0,-2            the vertex nearest to this position\n"
+    "  face:7:0.2,0.3,0.5  a point in face 7 in barycentric coordinates, one per corner (meshes)\n"
     "\n"
     "SOURCES is a list of SPECs separated by blanks, or a file with one SPEC per line.\n"
     "\n"
@@ -361,7 +361,7 @@ constexpr const char* logmap_footer =
     "  ahm logmap *.ply --source 0 -o maps/ --view 'maps/{}.png'\n"
     "  zcat scan.ply.gz | ahm logmap - --source 0 -o - --format jsonl | jq .distance\n"
     "  ahm logmap scan.pcd --source 0.1,0.2,1.4 --drop-nan --voxel 0.01 --outliers -o map.ply --view map.html\n"
-    "  ahm logmap mesh.obj --source face:7:.2,.3,.5 --u-axis 1,0,0 -o map.ply\n"
+    "  ahm logmap mesh.obj --source face:7:0.2,0.3,0.5 --u-axis 1,0,0 -o map.ply\n"
     "  ahm logmap scan.xyz --source 17 -o map.csv --json - | jq .status";
 
 /// The command line: every input is mapped from every source.

@@ -16,9 +16,9 @@ namespace {
 
 constexpr const char* path_footer =
     "POINTS is a list 'SPEC SPEC ...' or a file with one SPEC per line; SPEC is one of\n"
-    "  123              a vertex of INPUT, counted from 0\n"
-    "  1.5,0,-2         the nearest point of the surface; in files also 1.5 0 -2\n"
-    "  face:7:.2,.3,.5  a point in face 7 in barycentric coordinates, one per corner\n"
+    "  123                 a vertex of INPUT, counted from 0\n"
+    "  1.5,0,-2            the nearest point of the surface; in files also 1.5 0 -2\n"
+    "  face:7:0.2,0.3,0.5  a point in face 7 in barycentric coordinates, one per corner\n"
     "PAIRS is a file with two SPECs per line, one path per line. All paths from the same start share one map.\n"
     "\n"
     "Over flat faces the path is a shortest one, exact up to rounding. Over a cloud it runs from tangent plane to\n"
@@ -33,7 +33,7 @@ constexpr const char* path_footer =
     "\n"
     "Examples:\n"
     "  ahm path mesh.ply --from 17 --to 4711 -o path.csv --json -\n"
-    "  ahm path mesh.obj --from 0.1,0.2,1.4 --through '33 face:7:.2,.3,.5' --to 90 --closed -o loop.obj --view "
+    "  ahm path mesh.obj --from 0.1,0.2,1.4 --through '33 face:7:0.2,0.3,0.5' --to 90 --closed -o loop.obj --view "
     "loop.png\n"
     "  ahm path scan.ply --pairs pairs.txt -o paths.ply";
 

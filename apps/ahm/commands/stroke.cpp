@@ -22,9 +22,9 @@ namespace {
 
 constexpr const char* stroke_footer =
     "CURVE is a list separated by blanks, or a file with one entry per line. An entry is one of\n"
-    "  123              a vertex of INPUT, counted from 0\n"
-    "  1.5,0,-2         the nearest point of the surface; in files also 1.5 0 -2\n"
-    "  face:7:.2,.3,.5  a point in face 7 in barycentric coordinates, one per corner (meshes)\n"
+    "  123                 a vertex of INPUT, counted from 0\n"
+    "  1.5,0,-2            the nearest point of the surface; in files also 1.5 0 -2\n"
+    "  face:7:0.2,0.3,0.5  a point in face 7 in barycentric coordinates, one per corner (meshes)\n"
     "Shortest paths join the points, over the faces of meshes or the tangent planes of clouds. The curve is cut into\n"
     "pieces of half an edge.\n"
     "\n"
@@ -110,7 +110,7 @@ void write_results(const SurfaceCurve& curve, const StrokeOptions& shape, const 
   scene.v = rows.v;
   scene.distance = rows.distance;
   scene.quality = quality;
-  scene.told = {rows.distance, rows.spread, rows.status, {}};
+  scene.details = {rows.distance, rows.spread, rows.status, {}};
   scene.curve = line;
   scene.source = line.front();
   if (curve.first) scene.source_axes = {curve.first->x, curve.first->y, curve.first->normal};

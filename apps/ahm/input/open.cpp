@@ -126,7 +126,7 @@ Input open_surroundings(io::Geometry geometry, const Backend& backend, std::opti
   std::optional<RepairedMesh> part = mesh;
   if (part) keep_faces(*part, near.faces);
   InputOptions of_part = options;
-  of_part.turned = near.turned();
+  of_part.counts_as_reversed = near.counts_as_reversed();
   BuiltSurface built = build(backend, geometry, part, of_part, in_near_faces(place, near.faces), journal);
   count_beyond(beyond, built);
   journal.add_warnings(built.warnings);

@@ -15,7 +15,7 @@ polymesh::PolygonOptions polygon_options(const InputOptions& options, const Prog
   if (options.discretization == "refined") result.discretization = Discretization::refined;
   result.intrinsic_delaunay = options.flips;
   result.non_manifold = options.non_manifold == "split" ? NonManifold::split : NonManifold::error;
-  result.turned = options.turned;
+  result.counts_as_reversed = options.counts_as_reversed;
   result.threads = options.threads;
   result.progress = progress;
   return result;

@@ -88,7 +88,7 @@ void close_fans(const io::Geometry& input, std::vector<bool>& kept) {
 
 }  // namespace
 
-std::vector<std::uint8_t> Surroundings::turned() const {
+std::vector<std::uint8_t> Surroundings::counts_as_reversed() const {
   std::vector<std::uint8_t> result;
   if (!whole.reversed.empty())
     for (const Index f : faces) result.push_back(whole.reversed[f]);

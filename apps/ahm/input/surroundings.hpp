@@ -20,7 +20,7 @@ struct Surroundings {
   FaceParts whole;
 
   /// For each of `faces`: 1 if it is reversed in the surface of all faces.
-  std::vector<std::uint8_t> turned() const;
+  std::vector<std::uint8_t> counts_as_reversed() const;
   /// For each vertex the part of its last face, -1 if no face uses it.
   /// @param input  with all faces
   std::vector<Index> part_of_vertices(const io::Geometry& input) const;

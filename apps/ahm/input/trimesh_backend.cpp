@@ -28,7 +28,7 @@ MeshOptions mesh_options(const InputOptions& options, const Progress& progress) 
   MeshOptions result;
   result.intrinsic_delaunay = options.flips;
   result.non_manifold = options.non_manifold == "split" ? NonManifold::split : NonManifold::error;
-  result.turned = options.turned;
+  result.counts_as_reversed = options.counts_as_reversed;
   result.threads = options.threads;
   result.progress = progress;
   return result;

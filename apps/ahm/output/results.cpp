@@ -176,7 +176,7 @@ render::Scene Results::scene(const RowLogMap& rows, const std::vector<double>& q
   result.v = rows.v;
   result.quality = quality;
   result.source = source.position;
-  result.told = {rows.distance, rows.spread, rows.status, {}};
+  result.details = {rows.distance, rows.spread, rows.status, {}};
   if (source.frame) result.source_axes = {source.frame->x, source.frame->y, source.frame->normal};
   return result;
 }

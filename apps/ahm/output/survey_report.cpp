@@ -122,12 +122,13 @@ std::string repair_text(const RepairSurvey& repair, const TopologyReport& t) {
   const auto faces = [](Index count, const char* before, const char* after) {
     return fmt::format("{}{} {}", before, noun_after(count, "face"), after);
   };
-  const std::string done = counts_text({{c.welded, noun_after(c.welded, "vertex") + " joined"},
-                                        {c.shortened, faces(c.shortened, "", "shortened (repeated corners)")},
-                                        {c.degenerate, faces(c.degenerate, "degenerate ", "dropped")},
-                                        {c.not_finite, faces(c.not_finite, "", "with non-finite vertices dropped")},
-                                        {c.duplicates, faces(c.duplicates, "duplicate ", "dropped")},
-                                        {c.turned, faces(c.turned, "", "reversed")}});
+  const std::string done =
+      counts_text({{c.welded, noun_after(c.welded, "vertex") + " joined"},
+                   {c.repeated_corners, faces(c.repeated_corners, "", "with repeated corners mended")},
+                   {c.degenerate, faces(c.degenerate, "degenerate ", "dropped")},
+                   {c.not_finite, faces(c.not_finite, "", "with non-finite vertices dropped")},
+                   {c.duplicates, faces(c.duplicates, "duplicate ", "dropped")},
+                   {c.reversed, faces(c.reversed, "", "reversed")}});
   return fmt::format("--repair: {}; result: {}", c.any() ? done : "only cuts", counted(repair.parts, "part"));
 }
 
@@ -291,8 +292,9 @@ nlohmann::ordered_json as_json(const Survey& s, const std::string& path) {
   if (s.mesh) j["mesh"] = as_json(*s.mesh);
   if (s.repair) {
     const RepairCounts& c = s.repair->counts;
-    j["repair"] = {{"welded", c.welded},         {"shortened", c.shortened},   {"degenerate", c.degenerate},
-                   {"not_finite", c.not_finite}, {"duplicates", c.duplicates}, {"turned", c.turned},
+    j["repair"] = {{"welded", c.welded},         {"repeated_corners", c.repeated_corners},
+                   {"degenerate", c.degenerate}, {"not_finite", c.not_finite},
+                   {"duplicates", c.duplicates}, {"reversed", c.reversed},
                    {"parts", s.repair->parts}};
   }
   if (s.surface) add_surface(s, j);

@@ -36,12 +36,12 @@ constexpr Sentence sentences[] = {
      "columns {0:.0f} to {1:.0f} have no names; those of numbers are kept as column_{0:.0f} to column_{1:.0f}"},
     // meshes
     {"welded", "{0:.0f} [vertex was|vertices were] joined to another vertex within the distance of --weld"},
-    {"faces_shortened", "{0:.0f} [face|faces] lost repeated corners"},
+    {"repeated_corners", "{0:.0f} [face|faces] lost repeated corners"},
     {"degenerate_dropped",
      "{0:.0f} [face|faces] with fewer than three vertices or a repeated vertex [was|were] dropped"},
     {"not_finite_dropped", "{0:.0f} [face|faces] with a vertex that is not finite [was|were] dropped"},
     {"duplicates_dropped", "{0:.0f} duplicate [face was|faces were] dropped"},
-    {"faces_turned", "{0:.0f} [face was|faces were] reversed so that neighbors agree and closed parts face outward"},
+    {"faces_reversed", "{0:.0f} [face was|faces were] reversed so that neighbors agree and closed parts face outward"},
     {"unreferenced", "{0:.0f} [vertex|vertices] that no face uses [was|were] left out"},
     {"reoriented", "{0:.0f} [face was|faces were] reversed to orient the mesh consistently"},
     {"non_manifold_edges", "{0:.0f} [edge|edges] with more than two faces [was|were] cut"},
@@ -74,7 +74,7 @@ constexpr Sentence sentences[] = {
      "{0:.0f} input [normal disagrees|normals disagree] with the points; planes were estimated from the points, and "
      "the "
      "normals were used only for their sides"},
-    {"normals_turned", "{0:.0f} input [normal was|normals were] flipped to agree with the majority of normals around"},
+    {"normals_flipped", "{0:.0f} input [normal was|normals were] flipped to agree with the majority of normals around"},
     {"k_reduced", "k = {0:.0f} was reduced to {1:.0f}: the cloud has only {2:.0f} distinct [point|points]"},
     {"smoothed",
      "the noise across the surface is {1:.4g}, and {0:.0f} [point was|points were] smoothed before the map; --smooth "

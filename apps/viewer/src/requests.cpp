@@ -246,14 +246,15 @@ std::string Request::text(const char* name) const {
   return value.get<std::string>();
 }
 
-CoverageOptions Request::cover() const {
-  CoverageOptions cover;
-  cover.radius = positive("cover");
-  cover.spacing = positive("spacing");
-  if (cover.radius / cover.spacing > 500)
+CoverageOptions Request::coverage() const {
+  CoverageOptions options;
+  options.radius = positive("coverage_radius");
+  options.spacing = positive("spacing");
+  if (options.radius / options.spacing > 500)
     throw InvalidArgument("request: more than 500 lines from the source; choose a larger \"spacing\"");
-  cover.pattern = word("pattern", {"raster", "spiral"}) == "raster" ? CoveragePattern::raster : CoveragePattern::spiral;
-  return cover;
+  options.pattern =
+      word("pattern", {"raster", "spiral"}) == "raster" ? CoveragePattern::raster : CoveragePattern::spiral;
+  return options;
 }
 
 double Request::positive(const char* name) const {

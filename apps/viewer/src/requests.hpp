@@ -50,8 +50,8 @@ class Request {
   double positive(const char* name) const;
   double finite(const char* name) const;
   std::string text(const char* name) const;
-  /// The options in "cover", "spacing" and "pattern".
-  CoverageOptions cover() const;
+  /// The options in "coverage_radius", "spacing" and "pattern".
+  CoverageOptions coverage() const;
   /// A string member. @param allowed  allowed values
   std::string word(const char* name, const std::vector<std::string>& allowed) const;
   /// Whether the member exists and is not null.

@@ -333,9 +333,9 @@ struct Session::Impl {
     shown.quality = quality;
     shown.source = source;
     if (frame) shown.source_axes = {frame->x, frame->y, frame->normal};
-    shown.told.distance = rows.distance;
-    shown.told.spread = rows.spread;
-    shown.told.status = rows.status;
+    shown.details.distance = rows.distance;
+    shown.details.spread = rows.spread;
+    shown.details.status = rows.status;
     return page.map_bundle(shown, picture(pattern), more.dump());
   }
 
@@ -425,18 +425,18 @@ struct Session::Impl {
   }
 
   /// @param settings  result of `of_patch`
-  CoveragePath tool_path(const SurfacePoint& source, const CoverageOptions& cover, const Settings& settings,
+  CoveragePath tool_path(const SurfacePoint& source, const CoverageOptions& wanted, const Settings& settings,
                          const std::stop_token& stop) {
     const SurfaceSource placed = surface.source(source, settings.u_axis);
     Settings reach = settings;  // the whole map is not required, and its factorization takes long
-    if (makers.is_large()) reach.radius = 1.5 * cover.radius;
+    if (makers.is_large()) reach.radius = 1.5 * wanted.radius;
     const ExactGeodesics* flat = nullptr;
     const LogMap made = in_turn(stop, [&] {
       flat = makers.flat_faces();
       return map(source, placed, reach, stop, true);
     });
     const InverseMap inverse = inverse_map(surface, made, {.threads = options.threads});
-    CoveragePath path = flat ? coverage_path(*flat, inverse, cover) : coverage_path(inverse, cover);
+    CoveragePath path = flat ? coverage_path(*flat, inverse, wanted) : coverage_path(inverse, wanted);
     if (path.points.empty()) throw InvalidArgument("no line of the pattern reaches a reliable part of the map");
     return path;
   }
@@ -445,8 +445,8 @@ struct Session::Impl {
     const std::stop_token stop = channels.begin(request.client(), Channels::Kind::coverage, request.number());
     const SurfacePoint source = point_in(request, "source");
     const Settings settings = of_patch(request.settings(options.settings));
-    const CoverageOptions cover = request.cover();
-    const CoveragePath path = tool_path(source, cover, settings, stop);
+    const CoverageOptions wanted = request.coverage();
+    const CoveragePath path = tool_path(source, wanted, settings, stop);
     std::vector<Vec3> points;
     json pieces = {0};
     double length = 0;
@@ -464,9 +464,9 @@ struct Session::Impl {
          {"length", length / page.scale()},
          {"covered", static_cast<double>(carried) / static_cast<double>(path.planned)},
          {"command", command(options, "coverage",
-                             {"--source", spec(surface, source), "--radius", number(cover.radius), "--spacing",
-                              number(cover.spacing), "--pattern",
-                              cover.pattern == CoveragePattern::raster ? "raster" : "spiral", "-o", "path.csv"},
+                             {"--source", spec(surface, source), "--radius", number(wanted.radius), "--spacing",
+                              number(wanted.spacing), "--pattern",
+                              wanted.pattern == CoveragePattern::raster ? "raster" : "spiral", "-o", "path.csv"},
                              settings)}});
   }
 
@@ -512,7 +512,7 @@ struct Session::Impl {
       if (what == "decal") return write_decal(request, file, stop);
       if (what == "path")
         return options.write_path(file, path({point_in(request, "from"), point_in(request, "to")}, stop).points);
-      options.write_coverage(file, tool_path(point_in(request, "source"), request.cover(),
+      options.write_coverage(file, tool_path(point_in(request, "source"), request.coverage(),
                                              of_patch(request.settings(options.settings)), stop));
     };
     return {200, "application/octet-stream", exported(format, write)};

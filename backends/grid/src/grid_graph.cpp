@@ -32,6 +32,15 @@ Grid checked(Grid grid) {
 
 }  // namespace
 
+/// The star shared by all vertices with the same free cells around them.
+struct GridGraph::StarPattern {
+  std::size_t degree = 0;
+  double mass = 0;
+  std::array<Index, 6> jumps;      ///< number of a neighbor minus number of the vertex
+  std::array<double, 6> weights;   ///< area of the dual face / length of the edge
+  std::array<double, 6 * 3> logs;  ///< degree x d
+};
+
 GridGraph::GridGraph(Grid grid) : grid_(checked(std::move(grid))), dimension_(static_cast<int>(grid_.shape.size())) {
   Offset size = 1, cells = 1;
   for (Index n : grid_.shape) {
@@ -50,25 +59,27 @@ GridGraph::GridGraph(Grid grid) : grid_(checked(std::move(grid))), dimension_(st
   else
     for (int edge = 0; edge < 6; ++edge) transports_.insert(transports_.end(), {1, 0, 0, 0, 1, 0, 0, 0, 1});
   const std::size_t subsets = std::size_t{1} << (1 << dimension_);
-  for (std::size_t free_cells = 0; free_cells < subsets; ++free_cells) patterns_.push_back(make_pattern(free_cells));
+  std::vector<StarPattern> patterns;
+  for (std::size_t free_cells = 0; free_cells < subsets; ++free_cells) patterns.push_back(make_pattern(free_cells));
 
   const std::vector<Offset> count = count_patterns();
   for (std::size_t p = 0; p < subsets; ++p) {
-    edge_count_ += count[p] * static_cast<Offset>(patterns_[p].degree);
-    for (std::size_t k = 0; k < patterns_[p].degree * dimension_; ++k)
-      mean_edge_length_ += static_cast<double>(count[p]) * std::abs(patterns_[p].logs[k]);
+    edge_count_ += count[p] * static_cast<Offset>(patterns[p].degree);
+    for (std::size_t k = 0; k < patterns[p].degree * dimension_; ++k)
+      mean_edge_length_ += static_cast<double>(count[p]) * std::abs(patterns[p].logs[k]);
   }
+  patterns_ = std::make_shared<const std::vector<StarPattern>>(std::move(patterns));
   if (edge_count_ == 0) throw InvalidGeometry("all " + detail::counted(cells, "cell") + " of the grid are blocked");
   mean_edge_length_ /= static_cast<double>(edge_count_);
 }
 
 /// Bit c of `free_cells` is the cell on the upper side of axis a if bit a of c is set, and on the lower side otherwise. Each
 /// free cell adds its share of the dual faces and of the volume.
-GridGraph::Pattern GridGraph::make_pattern(std::size_t free_cells) const {
+GridGraph::StarPattern GridGraph::make_pattern(std::size_t free_cells) const {
   const std::size_t cells = std::size_t{1} << dimension_;
   double share = 1;  // volume of a cell, per corner
   for (double h : grid_.spacing) share *= h / length_unit_ / 2;
-  Pattern pattern;
+  StarPattern pattern;
   // A vertex inside an obstacle has no edges, but a mass must be positive.
   pattern.mass = share * std::max(1, std::popcount(free_cells));
   Index jump = 1;
@@ -87,7 +98,7 @@ GridGraph::Pattern GridGraph::make_pattern(std::size_t free_cells) const {
 }
 
 std::vector<Offset> GridGraph::count_patterns() const {
-  std::vector<Offset> count(patterns_.size(), 0);
+  std::vector<Offset> count(std::size_t{1} << (1 << dimension_), 0);
   if (!grid_.blocked.empty()) {
     for (Index i = 0; i < size_; ++i) ++count[pattern_at(i)];
     return count;
@@ -131,10 +142,12 @@ std::size_t GridGraph::pattern_at(Index vertex) const {
   return free_cells;
 }
 
-double GridGraph::mass(Index vertex) const { return patterns_[pattern_at(vertex)].mass; }
+const GridGraph::StarPattern& GridGraph::pattern(Index vertex) const { return (*patterns_)[pattern_at(vertex)]; }
+
+double GridGraph::mass(Index vertex) const { return pattern(vertex).mass; }
 
 Star GridGraph::star(Index vertex) const {
-  const Pattern& p = patterns_[pattern_at(vertex)];
+  const StarPattern& p = pattern(vertex);
   thread_local std::array<Index, 6> neighbors;
   for (std::size_t e = 0; e < p.degree; ++e) neighbors[e] = vertex + p.jumps[e];
   const std::size_t d = static_cast<std::size_t>(dimension_);

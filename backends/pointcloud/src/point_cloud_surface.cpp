@@ -132,12 +132,12 @@ std::vector<char> orient(const CleanPoints& cloud, const WeightedEdges& edges, s
                          const CloudParts& parts, const std::vector<char>& cut, const CloudOptions& options,
                          TangentPlanes& planes, CloudDetails& report) {
   const bool signs_given = !given.empty() && options.normal_signs == NormalSigns::automatic;
-  const std::vector<Index> turned = orient_normals(cloud, edges, signs_given, parts, cut, options.threads, planes);
+  const std::vector<Index> flipped = orient_normals(cloud, edges, signs_given, parts, cut, options.threads, planes);
   std::vector<char> consistent_signs = cut;
-  report.turned = 0;
-  for (std::size_t part = 0; part < turned.size() && signs_given; ++part) {
-    report.turned += turned[part];
-    if (turned[part] == 0) consistent_signs[part] = 1;
+  report.flipped_normals = 0;
+  for (std::size_t part = 0; part < flipped.size() && signs_given; ++part) {
+    report.flipped_normals += flipped[part];
+    if (flipped[part] == 0) consistent_signs[part] = 1;
   }
   report.oriented = std::find(consistent_signs.begin(), consistent_signs.end(), 0) == consistent_signs.end();
   return consistent_signs;
@@ -398,7 +398,7 @@ std::vector<Warning> PointCloudSurface::warnings() const {
     result.push_back({"no_surface", {static_cast<double>(d.thick), static_cast<double>(d.vertices)}, {}});
   warn("lines", d.lines);
   warn("degenerate", d.degenerate, d.first_degenerate);
-  warn("normals_turned", d.turned);
+  warn("normals_flipped", d.flipped_normals);
   if (d.k < d.k_asked)
     result.push_back(
         {"k_reduced", {static_cast<double>(d.k_asked), static_cast<double>(d.k), static_cast<double>(d.k + 1)}, {}});

@@ -12,10 +12,10 @@ namespace ahm::polymesh {
 
 PolygonMesh PolygonMesh::from_faces(std::span<const Vec3> positions, std::span<const Offset> face_begin,
                                     std::span<const Index> face_vertices, NonManifold non_manifold,
-                                    std::span<const std::uint8_t> turned) {
+                                    std::span<const std::uint8_t> counts_as_reversed) {
   detail::check_positions(positions, face_vertices);
-  PolygonMesh mesh(
-      detail::GluedMesh(static_cast<Index>(positions.size()), {face_begin, face_vertices}, non_manifold, turned));
+  PolygonMesh mesh(detail::GluedMesh(static_cast<Index>(positions.size()), {face_begin, face_vertices}, non_manifold,
+                                     counts_as_reversed));
   mesh.collect_corners();
   if (!mesh.report().orientable) mesh.orient_vertices();
   mesh.input_.assign(positions.begin(), positions.end());

@@ -254,7 +254,7 @@ PolygonMeshSurface PolygonMeshSurface::build(std::span<const Vec3> positions, st
     detail::Stopwatch stopwatch;
     options.progress.step("checks", 0.0);
     PolygonMesh mesh =
-        PolygonMesh::from_faces(positions, face_begin, face_vertices, options.non_manifold, options.turned);
+        PolygonMesh::from_faces(positions, face_begin, face_vertices, options.non_manifold, options.counts_as_reversed);
     return build(std::move(mesh), options, stopwatch.lap());
   });
 }

@@ -27,6 +27,15 @@ std::size_t resident_file_bytes() {
 
 }  // namespace
 
+struct TiledGraph::Tile {
+  explicit Tile(ArrayFile mapped, std::size_t width);
+  ArrayFile file;
+  std::span<const Offset> row_begin;
+  std::span<const Index> neighbors, component;
+  std::span<const double> weights, logs, transports, masses;
+  std::int64_t used = 0;
+};
+
 TiledGraph::Tile::Tile(ArrayFile mapped, std::size_t width)
     : file(std::move(mapped)),
       row_begin(file.get<Offset>("row_begin")),
@@ -82,7 +91,7 @@ void TiledGraph::release_memory() const {
 
 const TiledGraph::Tile& TiledGraph::tile(std::size_t number) const {
   if (!tiles_[number]) {
-    auto mapped = std::make_unique<Tile>(ArrayFile(Manifest::file(folder_, kind::graph, number), kind::graph), width_);
+    auto mapped = std::make_shared<Tile>(ArrayFile(Manifest::file(folder_, kind::graph, number), kind::graph), width_);
     const auto identity = mapped->file.get<std::uint64_t>("identity");
     if (!std::ranges::equal(identity, manifest_.identity(number)))
       throw IoError("cannot read '" + mapped->file.path().string() +

@@ -65,8 +65,8 @@ void check(const TiledGraph& graph, const Source& source, const TiledMapOptions&
 
 TiledMapSummary write_log_map(const TiledGraph& graph, const Source& source, const std::filesystem::path& folder,
                               const TiledMapOptions& options) {
-  Alone alone(graph.dimension());
-  return team_log_map(graph, source, folder, options, alone, {0, 1, std::vector<int>(graph.tiles(), 0)});
+  SingleMember team(graph.dimension());
+  return team_log_map(graph, source, folder, options, team, {0, 1, std::vector<int>(graph.tiles(), 0)});
 }
 
 TiledMapSummary team_log_map(const TiledGraph& graph, const Source& source, const std::filesystem::path& folder,

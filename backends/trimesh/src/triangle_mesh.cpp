@@ -44,22 +44,22 @@ std::span<const Index> corners_of(std::span<const Triangle> faces) {
 }
 
 detail::GluedMesh glued(Index vertices, std::span<const Triangle> faces, NonManifold non_manifold,
-                        std::span<const std::uint8_t> turned) {
+                        std::span<const std::uint8_t> counts_as_reversed) {
   std::vector<Offset> begin(faces.size() + 1);
   for (std::size_t f = 0; f < begin.size(); ++f) begin[f] = static_cast<Offset>(3 * f);
-  return detail::GluedMesh(vertices, {begin, corners_of(faces)}, non_manifold, turned);
+  return detail::GluedMesh(vertices, {begin, corners_of(faces)}, non_manifold, counts_as_reversed);
 }
 
 }  // namespace
 
 TriangleMesh::TriangleMesh(Index vertices, std::span<const Triangle> faces, NonManifold non_manifold,
-                           std::span<const std::uint8_t> turned)
-    : topology_(glued(vertices, faces, non_manifold, turned)) {}
+                           std::span<const std::uint8_t> counts_as_reversed)
+    : topology_(glued(vertices, faces, non_manifold, counts_as_reversed)) {}
 
 TriangleMesh TriangleMesh::from_positions(std::span<const Vec3> positions, std::span<const Triangle> faces,
-                                          NonManifold non_manifold, std::span<const std::uint8_t> turned) {
+                                          NonManifold non_manifold, std::span<const std::uint8_t> counts_as_reversed) {
   detail::check_positions(positions, corners_of(faces));
-  TriangleMesh mesh(static_cast<Index>(positions.size()), faces, non_manifold, turned);
+  TriangleMesh mesh(static_cast<Index>(positions.size()), faces, non_manifold, counts_as_reversed);
   mesh.input_.assign(positions.begin(), positions.end());
   std::vector<Vec3> points;
   for (Index v : mesh.input_of_vertex()) points.push_back(positions[v]);

@@ -460,7 +460,8 @@ TriangleMeshSurface TriangleMeshSurface::build(std::span<const Vec3> positions, 
   return detail::with_memory_check(what, [&] {
     detail::Stopwatch stopwatch;
     options.progress.step("checks", 0.0);
-    TriangleMesh mesh = TriangleMesh::from_positions(positions, faces, options.non_manifold, options.turned);
+    TriangleMesh mesh =
+        TriangleMesh::from_positions(positions, faces, options.non_manifold, options.counts_as_reversed);
     return build(std::move(mesh), options, stopwatch.lap());
   });
 }

@@ -68,8 +68,8 @@ void fill_pinholes(Film& film, float gap, unsigned threads) {
         for (const Step& step : steps) {
           if (x + step.x < 0 || x + step.x >= film.width || y + step.y < 0 || y + step.y >= film.height) continue;
           const Pixel& around = film.at(x + step.x, y + step.y);
-          if (around.cover < 65535) continue;
-          if (here.nearness > 0 && 1 / here.nearness - 1 / around.nearness < gap && here.cover == 65535) continue;
+          if (around.coverage < 65535) continue;
+          if (here.nearness > 0 && 1 / here.nearness - 1 / around.nearness < gap && here.coverage == 65535) continue;
           ++nearer;
           other = &around;
         }
@@ -91,8 +91,8 @@ Image develop(const Film& film, float focal, bool darken, unsigned threads) {
         std::uint8_t* out = image.pixel(x, y);
         const float left = darken ? crevices.light(x, y) : 1;
         for (std::size_t c = 0; c < 3; ++c)
-          out[c] = glsl::to_srgb_byte(
-              static_cast<std::uint16_t>(std::lround(left * static_cast<float>(pixel.light[c])) + 65535 - pixel.cover));
+          out[c] = glsl::to_srgb_byte(static_cast<std::uint16_t>(
+              std::lround(left * static_cast<float>(pixel.light[c])) + 65535 - pixel.coverage));
         out[3] = 255;
       }
   });

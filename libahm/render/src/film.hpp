@@ -16,8 +16,8 @@ namespace ahm::render {
 /// A pixel; linear color in 65535ths, without the background.
 struct Pixel {
   std::array<std::uint16_t, 3> light{};
-  std::uint16_t cover = 0;  ///< covered part of the pixel, in 65535ths
-  float nearness = 0;       ///< nearness of the nearest object in the pixel
+  std::uint16_t coverage = 0;  ///< covered part of the pixel, in 65535ths
+  float nearness = 0;          ///< nearness of the nearest object in the pixel
 };
 
 struct Film {

@@ -143,12 +143,12 @@ struct PageSurface::Impl {
     std::vector<std::array<Eigen::Vector3f, 2>> gradients(n);
     const auto row = [&](std::size_t k) { return static_cast<std::size_t>(drawable.points[k]); };
     const auto value = [&](std::size_t k) { return painted[row(k)].cast<double>().eval(); };
-    const auto is_known = [&](std::size_t k) { return painted[row(k)].allFinite(); };
+    const auto has_values = [&](std::size_t k) { return painted[row(k)].allFinite(); };
     const auto position = [&](std::size_t k) { return drawable.positions[k].cast<double>().eval(); };
     const SplatGradient gradient{drawable.normals, drawable.rings, 1, is_cells};
     detail::parallel_chunks(static_cast<Offset>(n), 4096, threads, [&](Offset begin, Offset end) {
       for (Offset k = begin; k < end; ++k)
-        gradients[k] = gradient(static_cast<std::size_t>(k), position, value, is_known);
+        gradients[k] = gradient(static_cast<std::size_t>(k), position, value, has_values);
     });
     steepest = 0;
     for (const auto& g : gradients)
@@ -195,17 +195,17 @@ std::string PageSurface::map_bundle(const Scene& scene, const PictureOptions& op
   const Impl& surface = *impl_;
   const Paint paint = make_paint(scene, surface.shown, options);
   const std::vector<Eigen::Vector2f> painted = surface.painted(scene, paint);
-  const std::span<const double> distance = scene.told.distance.empty() ? scene.distance : scene.told.distance;
+  const std::span<const double> distance = scene.details.distance.empty() ? scene.distance : scene.details.distance;
   Bundle out;
   float steepest = 0;
   const bool has_values = options.pattern != Pattern::none && (!scene.u.empty() || !scene.labels.empty());
   if (has_values) out.add<float>("uv", painted);
   if (!distance.empty()) out.add<float>("distance", surface.lengths(distance));
-  if (!scene.told.spread.empty()) out.add<float>("spread", surface.lengths(scene.told.spread));
+  if (!scene.details.spread.empty()) out.add<float>("spread", surface.lengths(scene.details.spread));
   if (!scene.quality.empty()) out.add<float>("quality", std::vector<float>(scene.quality.begin(), scene.quality.end()));
-  if (!scene.told.status.empty()) {
+  if (!scene.details.status.empty()) {
     std::vector<std::uint8_t> status;
-    for (const Status s : scene.told.status) status.push_back(static_cast<std::uint8_t>(s));
+    for (const Status s : scene.details.status) status.push_back(static_cast<std::uint8_t>(s));
     out.add<std::uint8_t>("status", status);
   }
   if (!surface.drawable.is_mesh() && has_values)
@@ -216,7 +216,7 @@ std::string PageSurface::map_bundle(const Scene& scene, const PictureOptions& op
                {"ring_width", paint.ring_width / surface.camera.scale},
                {"steepest", steepest},
                {"source", triple(surface.to_page(scene.source))},
-               {"spec", scene.told.source},
+               {"spec", scene.details.source},
                {"position", triple(as_vector(scene.source))}});
   meta.update(json::parse(more));
   return std::move(out).finish(std::move(meta));

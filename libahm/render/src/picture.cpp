@@ -72,9 +72,9 @@ void check_map(const Scene& scene, Pattern pattern) {
   optional(scene.quality.size(), "quality");
   optional(scene.normals.size(), "normals");
   optional(scene.colors.size(), "colors");
-  optional(scene.told.distance.size(), "told.distance");
-  optional(scene.told.spread.size(), "told.spread");
-  optional(scene.told.status.size(), "told.status");
+  optional(scene.details.distance.size(), "details.distance");
+  optional(scene.details.spread.size(), "details.spread");
+  optional(scene.details.status.size(), "details.status");
 }
 
 }  // namespace

@@ -19,22 +19,22 @@ struct SplatGradient {
   double values_per_length;  ///< length of the gradient of an isometric map
   bool is_cells = false;     ///< the first value is the number of a color
 
-  /// @param k         index of the disc
-  /// @param position  position(k): position of a disc
-  /// @param value     value(k): the two values of a disc
-  /// @param is_known  is_known(k): whether a disc has values
-  template <class Position, class Value, class Known>
+  /// @param k           index of the disc
+  /// @param position    position(k): position of a disc
+  /// @param value       value(k): the two values of a disc
+  /// @param has_values  has_values(k): whether a disc has values
+  template <class Position, class Value, class HasValues>
   std::array<Eigen::Vector3f, 2> operator()(std::size_t k, const Position& position, const Value& value,
-                                            const Known& is_known) const {
+                                            const HasValues& has_values) const {
     using Eigen::Vector3d;
     const Vector3d normal = normals[k].template cast<double>();
-    if (!is_known(k) || !(normal.squaredNorm() > 0)) return {Eigen::Vector3f::Zero(), Eigen::Vector3f::Zero()};
+    if (!has_values(k) || !(normal.squaredNorm() > 0)) return {Eigen::Vector3f::Zero(), Eigen::Vector3f::Zero()};
     const Vector3d x = normal.unitOrthogonal(), y = normal.cross(x);
     Eigen::Matrix2d square = Eigen::Matrix2d::Zero(), right = Eigen::Matrix2d::Zero();
     for (const std::uint32_t other : rings[k]) {
       const Vector3d d = position(other) - position(k);
       const Eigen::Vector2d change = value(other) - value(k);
-      if (!is_known(other) || change.norm() > 5 * values_per_length * d.norm()) continue;
+      if (!has_values(other) || change.norm() > 5 * values_per_length * d.norm()) continue;
       if (is_cells && change.x() != 0) continue;
       const Eigen::Vector2d flat(d.dot(x), d.dot(y));
       square += flat * flat.transpose();

@@ -71,12 +71,12 @@ class Splatter {
     for (const Local& local : locals) out_.rings.push_back(local.ring);
     if (paint_.pattern == Pattern::none) return std::move(out_);
     const auto value = [&](std::size_t k) { return paint_.uv[shown_[k]]; };
-    const auto is_known = [&](std::size_t k) { return paint_.known[shown_[k]] != 0; };
+    const auto has_values = [&](std::size_t k) { return paint_.known[shown_[k]] != 0; };
     const auto position = [&](std::size_t k) { return as_vector(points_[k]); };
     const SplatGradient gradient{out_.normals, out_.rings, rings_per_length_, paint_.pattern == Pattern::cells};
     detail::parallel_chunks(static_cast<Offset>(n), 4096, threads, [&](Offset begin, Offset end) {
       for (Offset k = begin; k < end; ++k)
-        out_.gradients[k] = gradient(static_cast<std::size_t>(k), position, value, is_known);
+        out_.gradients[k] = gradient(static_cast<std::size_t>(k), position, value, has_values);
     });
     return std::move(out_);
   }

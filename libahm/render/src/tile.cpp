@@ -355,9 +355,9 @@ void TileRenderer::develop(Film& film) const {
         pixel.nearness = std::max(pixel.nearness, nearness_[s]);
       }
       constexpr float share = 65535.0F / (factor * factor);
-      pixel.cover = static_cast<std::uint16_t>(std::lround(share * static_cast<float>(covered)));
+      pixel.coverage = static_cast<std::uint16_t>(std::lround(share * static_cast<float>(covered)));
       for (const auto& [c, channel] : {std::pair{0, sum.x}, std::pair{1, sum.y}, std::pair{2, sum.z}})
-        pixel.light[c] = std::min(pixel.cover, static_cast<std::uint16_t>(std::lround(share * channel)));
+        pixel.light[c] = std::min(pixel.coverage, static_cast<std::uint16_t>(std::lround(share * channel)));
       film.at(left + x, top + y) = pixel;
     }
 }

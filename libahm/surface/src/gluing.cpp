@@ -92,7 +92,7 @@ class Gluer {
   }
 
   /// Reverses faces until neighbors agree, one component at a time.
-  void orient(std::span<const std::uint8_t> counts_as_turned) {
+  void orient(std::span<const std::uint8_t> counts_as_reversed) {
     const auto count = faces_.size();
     result_.reversed.assign(count, 2);
     std::vector<Index> component;
@@ -103,7 +103,7 @@ class Gluer {
       std::size_t turned = 0;
       for (std::size_t at = 0; at < component.size(); ++at) {
         const Index f = component[at];
-        turned += result_.reversed[f] != (counts_as_turned.empty() ? 0 : counts_as_turned[f]);
+        turned += result_.reversed[f] != (counts_as_reversed.empty() ? 0 : counts_as_reversed[f]);
         for (Offset h = faces_.begin[f]; h < faces_.begin[f + 1]; ++h) visit_across(static_cast<Half>(h), component);
       }
       const bool turn_all = 2 * turned > component.size();
@@ -247,9 +247,10 @@ std::vector<std::pair<Index, Index>> find_duplicates(Index vertices, const FaceL
   return gluer.duplicates();
 }
 
-Gluing glue(Index vertices, const FaceList& faces, NonManifold non_manifold, std::span<const std::uint8_t> turned) {
-  if (!turned.empty() && turned.size() != faces.size())
-    throw InvalidArgument("'turned' has " + detail::counted(turned.size(), "entry") + " for " +
+Gluing glue(Index vertices, const FaceList& faces, NonManifold non_manifold,
+            std::span<const std::uint8_t> counts_as_reversed) {
+  if (!counts_as_reversed.empty() && counts_as_reversed.size() != faces.size())
+    throw InvalidArgument("'counts_as_reversed' has " + detail::counted(counts_as_reversed.size(), "entry") + " for " +
                           detail::counted(faces.size(), "face"));
   const FaceFaults faults = find_faults(vertices, faces);
   refuse("vertices_outside", faults.outside, faces, "have", "a vertex outside [0, " + std::to_string(vertices) + ")",
@@ -260,7 +261,7 @@ Gluing glue(Index vertices, const FaceList& faces, NonManifold non_manifold, std
   gluer.pair_sides();
   gluer.refuse_duplicates();
   if (non_manifold == NonManifold::error) gluer.refuse_nonmanifold_edges();
-  gluer.orient(turned);
+  gluer.orient(counts_as_reversed);
   return gluer.take();
 }
 
@@ -333,10 +334,10 @@ bool are_triangles(const FaceList& faces) {
 }  // namespace
 
 GluedMesh::GluedMesh(Index vertices, const FaceList& faces, NonManifold non_manifold,
-                     std::span<const std::uint8_t> turned) {
+                     std::span<const std::uint8_t> counts_as_reversed) {
   report_.vertices = vertices;
   report_.faces = static_cast<Index>(faces.size());
-  build_half_edges(faces, non_manifold, turned);
+  build_half_edges(faces, non_manifold, counts_as_reversed);
   number_vertices(non_manifold);
   find_parts();
 }
@@ -344,8 +345,8 @@ GluedMesh::GluedMesh(Index vertices, const FaceList& faces, NonManifold non_mani
 /// Builds the half-edges of the oriented faces; tails are still input vertices. Reversing a face of m corners, whose first
 /// corner stays first, moves side s to side m - 1 - s.
 void GluedMesh::build_half_edges(const FaceList& faces, NonManifold non_manifold,
-                                 std::span<const std::uint8_t> turned) {
-  Gluing gluing = glue(report_.vertices, faces, non_manifold, turned);
+                                 std::span<const std::uint8_t> counts_as_reversed) {
+  Gluing gluing = glue(report_.vertices, faces, non_manifold, counts_as_reversed);
   report_.non_manifold_edges = gluing.non_manifold_edges;
   report_.reoriented = gluing.reoriented;
   report_.orientable = gluing.orientable;

@@ -66,7 +66,7 @@ RepairedMesh clean_faces(std::span<const Vec3> positions, const FaceList& faces,
       ++(finite ? mesh.counts.degenerate : mesh.counts.not_finite);
       continue;
     }
-    mesh.counts.shortened += corners.size() < faces[f].size();
+    mesh.counts.repeated_corners += corners.size() < faces[f].size();
     add(corners, given, mesh);
   }
   return mesh;
@@ -148,7 +148,7 @@ void orient(std::span<const Vec3> positions, RepairedMesh& mesh) {
     if (!orientation.turns(static_cast<Index>(f))) continue;
     std::reverse(mesh.face_vertices.begin() + mesh.face_begin[f] + 1,
                  mesh.face_vertices.begin() + mesh.face_begin[f + 1]);
-    ++mesh.counts.turned;
+    ++mesh.counts.reversed;
   }
 }
 
@@ -211,11 +211,11 @@ Report RepairedSurface::report() const {
   Report report = built_->report();
   const RepairCounts& c = mesh_.counts;
   report.push_back({"repair.welded", c.welded});
-  report.push_back({"repair.shortened", c.shortened});
+  report.push_back({"repair.repeated_corners", c.repeated_corners});
   report.push_back({"repair.degenerate", c.degenerate});
   report.push_back({"repair.not_finite", c.not_finite});
   report.push_back({"repair.duplicates", c.duplicates});
-  report.push_back({"repair.turned", c.turned});
+  report.push_back({"repair.reversed", c.reversed});
   return report;
 }
 
@@ -226,11 +226,11 @@ std::vector<Warning> RepairedSurface::warnings() const {
   };
   const RepairCounts& c = mesh_.counts;
   warn("welded", c.welded);
-  warn("faces_shortened", c.shortened);
+  warn("repeated_corners", c.repeated_corners);
   warn("degenerate_dropped", c.degenerate);
   warn("not_finite_dropped", c.not_finite);
   warn("duplicates_dropped", c.duplicates);
-  warn("faces_turned", c.turned);
+  warn("faces_reversed", c.reversed);
   for (Warning& warning : built_->warnings())
     warning.id == "unreferenced" ? warn(warning.id, unreferenced(mesh_)) : result.push_back(std::move(warning));
   return result;

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "ahm/error.hpp"
-#include "ahm/surface/face_tree.hpp"
 #include "ahm/util/small_math.hpp"
 #include "ahm/util/vec.hpp"
 

@@ -1,12 +1,14 @@
 /// \file
-/// A search tree for the row nearest to a position.
+/// Search trees for the row, and for the point of a mesh, nearest to a position.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "ahm/surface/row_map.hpp"
+#include "ahm/surface/surface_point.hpp"
 #include "ahm/types.hpp"
 
 namespace ahm {
@@ -38,6 +40,54 @@ class RowTree {
 
   std::vector<Entry> entries_;
   std::vector<std::uint8_t> axis_;  ///< axis along which the middle entry of a part splits the part
+};
+
+/// A bounding-box tree over the triangles of the faces (polygons are split into fans from their first corner). Immutable. Both arguments
+/// must outlive it.
+class FaceTree {
+ public:
+  struct Hit {
+    FacePoint point;
+    Vec3 position;    ///< position of `point`, in the units of the positions
+    double distance;  ///< distance in space from the query to `position`
+  };
+
+  /// O(n log n). Skips faces with corners that are not finite.
+  /// @throws InvalidGeometry (no face has finite corners)
+  FaceTree(std::span<const Vec3> positions, const FaceList& faces);
+
+  /// The nearest point of the faces. @param position  finite
+  Hit nearest(const Vec3& position) const;
+
+ private:
+  struct Piece {
+    Index face, corner;  ///< the triangle of corners 0, `corner` and `corner` + 1 of the face
+  };
+  struct Box {
+    Vec3 low, high;
+    std::size_t begin, end;  ///< range in `pieces_`
+    std::size_t second;      ///< number of the second child, 0 in a leaf; the first child follows this box
+  };
+
+  /// The nearest point of one triangle. All lengths times `scale` of the search.
+  struct Candidate {
+    std::array<double, 3> weights;  ///< barycentric coordinates in the triangle
+    Vec3 position;
+    double distance, size;  ///< size: the largest coordinate of the triangle
+  };
+
+  struct Search;
+
+  const Vec3& corner(const Piece& piece, int k) const;
+  void build(std::size_t begin, std::size_t end);
+  template <class Visitor>
+  void visit(std::size_t number, const Search& search, const Visitor& visitor) const;
+  Candidate nearest_in_piece(const Piece& piece, const Vec3& from, double scale) const;
+
+  std::span<const Vec3> positions_;
+  FaceList faces_;
+  std::vector<Piece> pieces_;
+  std::vector<Box> boxes_;
 };
 
 }  // namespace ahm

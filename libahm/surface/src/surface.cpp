@@ -13,7 +13,6 @@
 #include "ahm/maps/straight_line.hpp"
 #include "ahm/surface/directions.hpp"
 #include "ahm/surface/exact/flat_triangles.hpp"
-#include "ahm/surface/face_tree.hpp"
 #include "ahm/surface/polar_map_solver.hpp"
 #include "ahm/surface/surface_point.hpp"
 #include "ahm/util/parallel.hpp"

@@ -39,7 +39,7 @@ TEST(Normals, WithWrongSignsChangeTheMapAtMostByAReflection) {
   for (unsigned percent : {1, 5, 10, 15, 30, 50}) {
     const Cloud cloud = flipped_at_random(clean, percent, percent);
     const SolvedCloud solved(cloud.points, cloud.normals);
-    if (percent < 50) EXPECT_GT(solved.surface.details().turned, 0);
+    if (percent < 50) EXPECT_GT(solved.surface.details().flipped_normals, 0);
     if (percent == 50) EXPECT_FALSE(solved.surface.details().oriented);
     EXPECT_EQ(solved.surface.graph().transport_kind(), TransportKind::rotation2);
     EXPECT_EQ(solved.surface.details().components, 1);
@@ -128,7 +128,7 @@ TEST(Normals, AcrossSharpCreasesLieOnOneSide) {
   for (const double degrees : {60.0, 85.0, 90.0, 91.0, 100.0, 110.0}) {
     const Cloud cloud = roof(degrees * std::numbers::pi / 180);
     const SolvedCloud solved(cloud.points, cloud.normals);
-    EXPECT_EQ(solved.surface.details().turned, 0) << degrees;
+    EXPECT_EQ(solved.surface.details().flipped_normals, 0) << degrees;
     const RowLogMap map = solved.map(source),
                     of_rotated = SolvedCloud(rotated(cloud.points), rotated(cloud.normals)).map(source),
                     of_flipped = SolvedCloud(cloud.points, flipped_at_random(cloud, 30, 7).normals).map(source);

@@ -358,9 +358,9 @@ TEST(StreamedLogMap, GoesOnFromTheEndOfAnyBand) {
   for (const CsrGraphData& data : {sphere_graph(10000), as_blocks(sphere_graph(10000)), bent_lattice(16)})
     for (MarchGoal goal : {MarchGoal::map, MarchGoal::distances}) {
       const CsrGraph graph = with_edge_length(data);
-      Alone alone(graph.dimension());
+      SingleMember team(graph.dimension());
       const auto stream = [&](StoredRows& rows, OneBand* keeper) {
-        return team_log_map(graph, source_at(5), {}, {}, rows, alone, {.goal = goal, .keeper = keeper});
+        return team_log_map(graph, source_at(5), {}, {}, rows, team, {.goal = goal, .keeper = keeper});
       };
       StoredRows expected(graph);
       const MarchStatistics march = stream(expected, nullptr);

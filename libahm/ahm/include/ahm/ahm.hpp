@@ -46,7 +46,6 @@
 #include "ahm/surface/exact/flat_triangles.hpp"
 #include "ahm/surface/exact/geodesic_path.hpp"
 #include "ahm/surface/exact/polyhedral_surface.hpp"
-#include "ahm/surface/face_tree.hpp"
 #include "ahm/surface/gluing.hpp"
 #include "ahm/surface/half_edges.hpp"
 #include "ahm/surface/mesh_repair.hpp"

@@ -23,7 +23,7 @@ namespace ahm {
 /// which spreads a point over its neighbors. Curves have distances only, because their coordinates are not vectors to a point.
 class SourceVertices {
  public:
-  struct Known {
+  struct ExactValue {
     double distance;
     std::vector<double> vector;  ///< d numbers, world units; empty for curves
   };
@@ -33,7 +33,7 @@ class SourceVertices {
     for (std::size_t k = 0; k < source.vertices().size(); ++k) {
       if (!(source.weights()[k] > 0)) continue;
       const double distance = source.place(k).distance;
-      const auto [at, is_new] = known_.try_emplace(source.vertices()[k].index);
+      const auto [at, is_new] = values_.try_emplace(source.vertices()[k].index);
       if (!is_new && !(distance < at->second.distance)) continue;
       at->second.distance = distance;
       if (source.is_curve()) continue;
@@ -45,15 +45,15 @@ class SourceVertices {
   }
 
   /// Null if the vertex does not belong to the source.
-  const Known* find(Index vertex) const {
-    const auto found = known_.find(vertex);
-    return found == known_.end() ? nullptr : &found->second;
+  const ExactValue* find(Index vertex) const {
+    const auto found = values_.find(vertex);
+    return found == values_.end() ? nullptr : &found->second;
   }
-  auto begin() const { return known_.begin(); }
-  auto end() const { return known_.end(); }
+  auto begin() const { return values_.begin(); }
+  auto end() const { return values_.end(); }
 
  private:
-  std::unordered_map<Index, Known> known_;
+  std::unordered_map<Index, ExactValue> values_;
 };
 
 /// Right-hand sides at `vertices`: parallel arrays, d the dimension. `pairs` and `lengths` are Dirichlet data of a march; otherwise empty.

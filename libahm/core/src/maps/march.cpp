@@ -20,7 +20,7 @@ MarchState March::state() const {
   state.front = front_;
   numbers_.visit(
       [&](Index vertex, Index number) {
-        if (!ways_[number]->accepted) return;
+        if (!states_[number]->accepted) return;
         const std::span known = known_.row(number), found(found_[number], d_ + 2);
         state.vertices.push_back(vertex);
         state.values.insert(state.values.end(), known.begin(), known.end());
@@ -42,11 +42,11 @@ void March::restore(const MarchState& state) {
     throw InvalidArgument("the saved state belongs to another march: its size does not fit; start from the source");
   for (std::size_t run = 0; run + 1 < state.passed.size(); run += 2)
     for (Index vertex = state.passed[run]; vertex < state.passed[run + 1]; ++vertex) {
-      way(vertex);
+      state_of(vertex);
       forget(vertex);
     }
   for (std::size_t k = 0; k < state.vertices.size(); ++k) {
-    way(state.vertices[k]).accepted = true;
+    state_of(state.vertices[k]).accepted = true;
     const Index number = numbers_.find(state.vertices[k]);
     const auto row = std::span(state.values).subspan(k * width, width);
     known_.put(number, row.first(known), state.exponents[k]);
@@ -69,8 +69,8 @@ March::March(const TangentGraph& graph, const HeatOptions& options, const MarchS
       sink_(sink),
       goal_(goal),
       looks_ahead_(!sink && threads > 1 && std::isinf(reach.radius)),
-      alone_(team ? nullptr : std::make_unique<Alone>(graph.dimension(), looks_ahead_)),
-      team_(team ? *team : *alone_),
+      own_team_(team ? nullptr : std::make_unique<SingleMember>(graph.dimension(), looks_ahead_)),
+      team_(team ? *team : *own_team_),
       margin_(march_margin(options.accuracy)),
       step_(std::min(march_step, team_.reach())),
       reach_(reach),
@@ -79,10 +79,10 @@ March::March(const TangentGraph& graph, const HeatOptions& options, const MarchS
       threads_(threads),
       d_(static_cast<std::size_t>(graph.dimension())),
       numbers_(graph.size()),
-      ways_(1),
+      states_(1),
       known_(graph, system_of(variant), goal != MarchGoal::distances),
       found_(d_ + 2),
-      nothing_(d_, NAN) {
+      nan_(d_, NAN) {
   options_.progress = {};
   options_.threads = threads;
 }
@@ -102,7 +102,7 @@ void March::run_on(const AffineHeat& heat, std::size_t s, const Source& source) 
     if (heat.reached(s, i)) reached.push_back(i);
   for (Index i : reached) take_values(i, accept(i, heat.lambda(s)[i], 0), i, heat, s, 0);
   pass_front(reached);
-  keep_to_reach();
+  drop_out_of_reach();
   march(nullptr);
 }
 
@@ -139,7 +139,7 @@ void March::march(const Source* source) {
           if (last) solve_values(*last);
         },
         [&] { next = solve_heat(source); });
-    if (std::exchange(last, nullptr) && keep_to_reach()) continue;  // `next` started from a front that has changed
+    if (std::exchange(last, nullptr) && drop_out_of_reach()) continue;  // `next` started from a front that has changed
     if (!next) {
       front_.clear();
     } else if (!accept_near(*next)) {
@@ -152,7 +152,7 @@ void March::march(const Source* source) {
     } else {
       solve_values(*next);
       pass_front(next->accepted());
-      keep_to_reach();
+      drop_out_of_reach();
     }
     source = nullptr;
     if (keeper_) keeper_->end_band(*this);
@@ -196,7 +196,7 @@ std::unique_ptr<March::Solve> March::solve_heat(const Source* source) {
     solve->exponents.heat = static_cast<std::int32_t>(team_.greatest(known_.heat_exponent_for(numbers_behind(*solve))));
     right_hand_side = heat_behind(*solve);
   }
-  for (Index vertex : solve->band.vertices) way(vertex).place = -1;
+  for (Index vertex : solve->band.vertices) state_of(vertex).place = -1;
 
   solve->heat.emplace(solve->patch, *solve->operators, variant_, std::vector{std::move(right_hand_side)}, threads_);
   solve->heat->diffuse_heat();
@@ -300,7 +300,7 @@ double March::conductance(const Solve& solve, const Link& link) const {
 
 /// Marks a vertex as accepted and stores its heat. @return the number of the vertex
 Index March::accept(Index vertex, double lambda, std::int32_t exponent) {
-  way(vertex).accepted = true;
+  state_of(vertex).accepted = true;
   accepted_count_ += team_.owns(vertex) ? 1 : 0;
   const Index number = numbers_.find(vertex);
   known_.take_heat(number, lambda, exponent);
@@ -340,13 +340,13 @@ void March::pass_front(std::span<const Index> added) {
 }
 
 /// Removes vertices without finite values, or out of reach, from the front. @return whether there were any
-bool March::keep_to_reach() {
+bool March::drop_out_of_reach() {
   return std::erase_if(front_, [&](Index vertex) { return !is_within_reach(vertex); }) > 0;
 }
 
 /// Frees the values of a vertex whose neighbors are all accepted. They are not needed again.
 void March::forget(Index vertex) {
-  *ways_[numbers_.find(vertex)] = {};
+  *states_[numbers_.find(vertex)] = {};
   numbers_.forget(vertex);
 }
 
@@ -357,16 +357,16 @@ Index March::known_number(Index vertex) const {
   return number;
 }
 
-March::Way& March::way(Index vertex) {
+March::VertexState& March::state_of(Index vertex) {
   const Index number = numbers_.number(vertex);
-  ways_.grow_to(numbers_.count());
-  return *ways_[number];
+  states_.grow_to(numbers_.count());
+  return *states_[number];
 }
 
 /// Place of a vertex in the current band; -1: not in it.
 Index March::place(Index vertex) const {
   const Index number = numbers_.find(vertex);
-  return number < 0 ? -1 : ways_[number]->place;
+  return number < 0 ? -1 : states_[number]->place;
 }
 
 void March::axes(Index vertex, double* out) const {
@@ -412,9 +412,9 @@ March::Band March::find_band(const Source* source) {
   band.halo = team_.share(band.vertices);
   for (const HaloVertex& next : band.halo) band.vertices.push_back(next.vertex);
   for (std::size_t k = 0; k < band.vertices.size(); ++k) {
-    Way& way_to = way(band.vertices[k]);
-    way_to.place = static_cast<Index>(k);
-    way_to.tentative = far_away;
+    VertexState& own = state_of(band.vertices[k]);
+    own.place = static_cast<Index>(k);
+    own.tentative = far_away;
   }
   find_edge(band);
   return band;
@@ -473,14 +473,14 @@ std::vector<Index> March::search(const Source* source) {
   do
     paths.run([&](Index vertex, float distance) {
       if (distance > limit) return touched.push_back(vertex);
-      if (Way& own = way(vertex); own.place < 0) {
+      if (VertexState& own = state_of(vertex); own.place < 0) {
         own.place = 0;
         found.push_back(vertex);
       }
       spread(vertex, distance);
     });
   while (cross());
-  for (Index vertex : touched) way(vertex).tentative = far_away;
+  for (Index vertex : touched) state_of(vertex).tentative = far_away;
   return found;
 }
 
@@ -488,7 +488,7 @@ std::vector<Index> March::search(const Source* source) {
 bool March::may_be_nearer(Index vertex, double distance) const {
   const Index number = numbers_.find(vertex);
   if (number < 0) return number != ReachedNumbers::forgotten;
-  return !ways_[number]->accepted && !(ways_[number]->tentative <= distance);
+  return !states_[number]->accepted && !(states_[number]->tentative <= distance);
 }
 
 /// Finds the places in the band that have neighbors neither behind the front nor in the band.

@@ -100,10 +100,11 @@ class MarchTeam {
 
 /// A team with a single member. It solves by factors in the plane, and by conjugate gradients in volumes, where the factors of a band would
 /// need too much memory.
-class Alone final : public MarchTeam {
+class SingleMember final : public MarchTeam {
  public:
-  /// @param heat_first  whether to postpone the factorization of B, so that it can run at the same time as the next band's solve with A
-  explicit Alone(int dimension, bool heat_first = false) : iterative_(dimension > 2), heat_first_(heat_first) {}
+  /// @param defers_frames  whether to postpone the factorization of B, so that it can run at the same time as the next band's solve with A
+  explicit SingleMember(int dimension, bool defers_frames = false)
+      : iterative_(dimension > 2), defers_frames_(defers_frames) {}
   bool owns(Index) const override { return true; }
   double least(double value) override { return value; }
   double greatest(double value) override { return value; }
@@ -113,13 +114,13 @@ class Alone final : public MarchTeam {
   /// Chosen by measurement: the cost per vertex does not depend on the depth of a band, but values that have decayed more lose digits.
   double reach() const override { return iterative_ ? 8 : std::numeric_limits<double>::infinity(); }
   std::unique_ptr<const HeatSystem> system(BandPart part, const HeatOptions& options) override {
-    return (iterative_    ? iterative_system
-            : heat_first_ ? deferred_system
-                          : factored_system)(part.graph, std::move(part.tau), options.factor());
+    return (iterative_       ? iterative_system
+            : defers_frames_ ? deferred_system
+                             : factored_system)(part.graph, std::move(part.tau), options.factor());
   }
 
  private:
-  bool iterative_, heat_first_;
+  bool iterative_, defers_frames_;
 };
 
 /// The state of one member of a team between two bands, including its halo.
@@ -142,7 +143,7 @@ class MarchKeeper {
   virtual ~MarchKeeper() = default;
   /// The state from which to continue; nullopt: start from the source.
   virtual std::optional<MarchState> begin() = 0;
-  /// Called after each band, by all members of a team. `begin` may return `march.state()` later.
+  /// Called after each band, by all members of a team. `begin` may return `march.state_of()` later.
   virtual void end_band(const March& march) = 0;
 };
 
@@ -245,24 +246,22 @@ class March {
 
   /// phi_i, world units; NaN where `accepted` is false or too little heat arrived.
   std::span<const double> coordinates(Index vertex) const {
-    return accepted(vertex) ? std::span(found_[numbers_.find(vertex)], d_) : std::span(nothing_);
+    return accepted(vertex) ? std::span(found_[numbers_.find(vertex)], d_) : std::span(nan_);
   }
   /// sqrt(q_i / lambda_i), world units; NaN where `coordinates` is.
-  double root_mean_square(Index vertex) const {
-    return accepted(vertex) ? found_[numbers_.find(vertex)][d_] : nothing_[0];
-  }
+  double root_mean_square(Index vertex) const { return accepted(vertex) ? found_[numbers_.find(vertex)][d_] : NAN; }
   /// Distance by heat, world units; NaN where `coordinates` is.
-  double distance(Index vertex) const { return accepted(vertex) ? found_[numbers_.find(vertex)][d_ + 1] : nothing_[0]; }
+  double distance(Index vertex) const { return accepted(vertex) ? found_[numbers_.find(vertex)][d_ + 1] : NAN; }
   /// Whether the march has reached the vertex.
   bool accepted(Index vertex) const {
     const Index number = numbers_.find(vertex);
-    return number >= 0 ? ways_[number]->accepted : number == ReachedNumbers::forgotten;
+    return number >= 0 ? states_[number]->accepted : number == ReachedNumbers::forgotten;
   }
   /// U_i as d x d numbers, row major; the identity where `accepted` is false.
   void axes(Index vertex, double* out) const;
   const MarchStatistics& statistics() const { return statistics_; }
   /// Memory of the values of vertices.
-  std::size_t bytes() const { return numbers_.bytes() + ways_.bytes() + known_.bytes() + found_.bytes(); }
+  std::size_t bytes() const { return numbers_.bytes() + states_.bytes() + known_.bytes() + found_.bytes(); }
 
  private:
   struct Band {
@@ -280,14 +279,14 @@ class March {
     Index vertex;
     double weight, length;
   };
-  struct Way {  ///< the state of a vertex
+  struct VertexState {  ///< the state of a vertex
     bool accepted = false;
     Index place = -1;            ///< place in the current band; -1: not in it
     float tentative = INFINITY;  ///< heat distance relative to the front
   };
   struct Tentative {  ///< the heat distances of a search, as an array for `ShortestPaths`
     March& march;
-    float& operator[](Index vertex) const { return march.way(vertex).tentative; }
+    float& operator[](Index vertex) const { return march.state_of(vertex).tentative; }
   };
 
   void march(const Source* source);
@@ -310,8 +309,8 @@ class March {
   void take_values(Index vertex, Index number, Index place, const AffineHeat& heat, std::size_t s,
                    std::int32_t frame_exponent);
   void pass_front(std::span<const Index> added);
-  bool keep_to_reach();
-  Way& way(Index vertex);
+  bool drop_out_of_reach();
+  VertexState& state_of(Index vertex);
   Index place(Index vertex) const;
   bool has_neighbors_ahead(Index vertex) const;
   bool is_within_reach(Index vertex) const;
@@ -327,7 +326,7 @@ class March {
   MarchGoal goal_;
   MarchKeeper* keeper_ = nullptr;
   bool looks_ahead_;  ///< whether the next band's heat is computed at the same time as the other values of this band
-  std::unique_ptr<MarchTeam> alone_;
+  std::unique_ptr<MarchTeam> own_team_;
   MarchTeam& team_;
   double margin_, step_;
   MarchReach reach_;
@@ -337,11 +336,11 @@ class March {
   unsigned threads_;
   std::size_t d_;
 
-  ReachedNumbers numbers_;     ///< numbers of the visited vertices
-  GrowingRows<Way> ways_;      ///< states of the visited vertices
-  KnownValues known_;          ///< solved values of the accepted vertices
-  GrowingRows<double> found_;  ///< results at the accepted vertices: coordinates, root mean square, distance
-  std::vector<double> nothing_;
+  ReachedNumbers numbers_;           ///< numbers of the visited vertices
+  GrowingRows<VertexState> states_;  ///< states of the visited vertices
+  KnownValues known_;                ///< solved values of the accepted vertices
+  GrowingRows<double> found_;        ///< results at the accepted vertices: coordinates, root mean square, distance
+  std::vector<double> nan_;
   std::vector<Index> front_;  ///< accepted own vertices with neighbors that are not accepted
   MarchStatistics statistics_;
   Offset accepted_count_ = 0;  ///< number of accepted own vertices

@@ -112,14 +112,14 @@ void check_streamed_map(const TangentGraph& graph, const Source& source, const H
 
 MarchStatistics stream_log_map(const TangentGraph& graph, const Source& source, const StreamOptions& options,
                                MapSink& sink) {
-  Alone alone(graph.dimension());
-  return team_log_map(graph, source, heat_options(options), {.radius = options.radius}, sink, alone);
+  SingleMember team(graph.dimension());
+  return team_log_map(graph, source, heat_options(options), {.radius = options.radius}, sink, team);
 }
 
 MarchStatistics stream_distances(const TangentGraph& graph, const Source& source, const StreamOptions& options,
                                  MapSink& sink) {
-  Alone alone(graph.dimension());
-  return team_log_map(graph, source, heat_options(options), {.radius = options.radius}, sink, alone,
+  SingleMember team(graph.dimension());
+  return team_log_map(graph, source, heat_options(options), {.radius = options.radius}, sink, team,
                       {.goal = MarchGoal::distances});
 }
 

@@ -267,7 +267,7 @@ Ahm.Viewer = class {
     const positive = (id) => Number(this.element(id).value);
     if (!this.request || !this.request.source) return;
     const request = Object.assign({}, this.request, {
-      cover: positive("coverage_radius"), spacing: positive("coverage_spacing"), pattern: this.element("coverage_pattern").value
+      coverage_radius: positive("coverage_radius"), spacing: positive("coverage_spacing"), pattern: this.element("coverage_pattern").value
     });
     const answer = await (await this.server.post("coverage", request)).json();
     this.stage.set_marks({ curve: answer.points, pieces: answer.pieces });

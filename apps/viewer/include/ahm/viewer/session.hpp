@@ -79,7 +79,7 @@ std::string spec(const Surface& surface, const SurfacePoint& point);
 /// | map      | "source"                                               | bundle of the map, with "spec", "command"     |
 /// | stroke   | "points": along a curve                                | bundle of the map, with the curve             |
 /// | path     | "from", "to"                                           | JSON: "points", "length", "command"           |
-/// | coverage | "source", "cover": radius, "spacing", "pattern"        | JSON: "points", "pieces", "length", "covered" |
+/// | coverage | "source", "coverage_radius", "spacing", "pattern"      | JSON: "points", "pieces", "length", "covered" |
 /// | export   | "what", "format", and the members of such a request    | the file that the command writes              |
 ///
 /// "what" is "map", "stroke", "path", "coverage" or "decal". A decal requires "source", "image" (a PNG or JPEG file in base64), "size" (of

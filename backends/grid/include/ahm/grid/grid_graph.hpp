@@ -11,6 +11,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -76,19 +77,13 @@ class GridGraph final : public TangentGraph {
  private:
   using Steps = std::array<Index, 3>;
 
-  /// The star shared by all vertices with the same free cells around them.
-  struct Pattern {
-    std::size_t degree = 0;
-    double mass = 0;
-    std::array<Index, 6> jumps;      ///< number of a neighbor minus number of the vertex
-    std::array<double, 6> weights;   ///< area of the dual face / length of the edge
-    std::array<double, 6 * 3> logs;  ///< degree x d
-  };
+  struct StarPattern;
 
   Steps steps(Index vertex) const;
   bool is_free(const Steps& cell) const;
   std::size_t pattern_at(Index vertex) const;
-  Pattern make_pattern(std::size_t free_cells) const;
+  StarPattern make_pattern(std::size_t free_cells) const;
+  const StarPattern& pattern(Index vertex) const;
   /// Number of vertices with each pattern.
   std::vector<Offset> count_patterns() const;
   Source source_in_cell(const Steps& cell, const Vec3& share, std::span<const double> point) const;
@@ -99,8 +94,8 @@ class GridGraph final : public TangentGraph {
   double length_unit_;
   Offset edge_count_ = 0;
   double mean_edge_length_ = 0;
-  std::vector<Pattern> patterns_;   ///< one per subset of the 2^d cells around a vertex
-  std::vector<double> transports_;  ///< 2 d times the identity
+  std::shared_ptr<const std::vector<StarPattern>> patterns_;  ///< one per subset of the 2^d cells around a vertex
+  std::vector<double> transports_;                            ///< 2 d times the identity
 };
 
 }  // namespace ahm::grid

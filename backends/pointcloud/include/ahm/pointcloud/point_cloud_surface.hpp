@@ -84,7 +84,7 @@ struct CloudDetails {
   Index contradicted = 0;      ///< input normals that contradict the points: only their signs are used
   Index thick = 0;             ///< points with neighborhoods as thick as wide: no surface
   Index lines = 0;             ///< points in parts without an interior point: lines, not surfaces
-  Index turned = 0;            ///< input normals opposed to the majority in their component, and flipped
+  Index flipped_normals = 0;   ///< input normals opposed to the majority in their component, and flipped
   bool oriented = false;       ///< input normals determine the upper side everywhere
   double agreement = 1;  ///< fraction of the local triangles found in the local triangulations of all three corners
   /// Standard deviation of neighbors' offsets across the surface before smoothing, world units; for several parts, that of the
@@ -109,7 +109,7 @@ struct CloudDetails {
 /// oriented, noise, layer_gap, mollification, seconds.normals, seconds.delaunay, seconds.laplacian, seconds.graph.
 ///
 /// Warnings, each with a count unless noted: normals_estimated; normals_contradicted; cover_not_delaunay (no number); degenerate
-/// (with rows); normals_turned; k_reduced (k requested, k used, distinct points); smoothed (points, noise); near_duplicates;
+/// (with rows); normals_flipped; k_reduced (k requested, k used, distinct points); smoothed (points, noise); near_duplicates;
 /// coarse_coordinates (step, mean edge length); layers (gap); no_surface (points as thick as wide, vertices); lines (points);
 /// non_finite; duplicates; thin_walls (pairs of neighbors not joined); reflections (edges); cloud_components (components, if more
 /// than one).

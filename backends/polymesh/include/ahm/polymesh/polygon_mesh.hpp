@@ -34,19 +34,19 @@ struct Refinement {
 
 /// An immutable polygon mesh, consistently oriented where that is possible.
 ///
-/// Faces keep their numbers. A face that was turned over has its corners in the opposite order, with the same first corner.
+/// Faces keep their numbers. A face that was reversed has its corners in the opposite order, with the same first corner.
 /// Vertices are renumbered in the order of the input, without unreferenced ones; copies made by splitting come last.
 class PolygonMesh {
  public:
   /// @param face_begin     faces + 1 offsets into `face_vertices`, ascending from 0
   /// @param face_vertices  vertex numbers, face after face
-  /// @param turned         per face, 1 if the majority orientation of its component is computed as if the face were turned over
+  /// @param counts_as_reversed  per face, 1 if the majority orientation of its component is computed as if the face were
   ///                       (`face_parts`); empty: no face
   /// @throws InvalidGeometry (no faces, index out of range, fewer than three corners, vertex repeated in a face,
   ///         duplicate face, vertex of a face not finite, non-manifold edge or vertex); messages list the first ten and the count
   static PolygonMesh from_faces(std::span<const Vec3> positions, std::span<const Offset> face_begin,
                                 std::span<const Index> face_vertices, NonManifold non_manifold = NonManifold::error,
-                                std::span<const std::uint8_t> turned = {});
+                                std::span<const std::uint8_t> counts_as_reversed = {});
 
   Index vertex_count() const noexcept { return topology_.vertex_count(); }
   Index face_count() const noexcept { return topology_.face_count(); }
@@ -66,7 +66,7 @@ class PolygonMesh {
   Index face_of(Offset corner) const { return topology_.face_of(corner); }
   /// Whether the face of a corner is oriented against the vertex there; always false on an orientable mesh.
   bool mirrored(Offset corner) const { return !mirrored_.empty() && mirrored_[corner] != 0; }
-  /// Whether a face was turned over.
+  /// Whether a face was reversed.
   bool reversed(Index f) const { return topology_.reversed()[f] != 0; }
 
   /// First vertex of each input vertex; -1: no face uses it.

@@ -42,8 +42,8 @@ struct PolygonOptions {
   bool clamp_weights = true;
   NonManifold non_manifold = NonManifold::error;
   /// For a part of a larger mesh, per face: 1 if the larger mesh turns it over (`face_parts`). The majority orientation of a
-  /// component is then computed as if these faces were turned over. Empty: no face.
-  std::vector<std::uint8_t> turned = {};
+  /// component is then computed as if these faces were reversed. Empty: no face.
+  std::vector<std::uint8_t> counts_as_reversed = {};
   unsigned threads = 0;  ///< 0: one per core. No result depends on it
   Progress progress;
 };

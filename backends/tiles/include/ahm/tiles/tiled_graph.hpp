@@ -73,14 +73,7 @@ class TiledGraph final : public TangentGraph {
   std::int64_t releases() const noexcept { return releases_; }
 
  private:
-  struct Tile {
-    explicit Tile(ArrayFile mapped, std::size_t width);
-    ArrayFile file;
-    std::span<const Offset> row_begin;
-    std::span<const Index> neighbors, component;
-    std::span<const double> weights, logs, transports, masses;
-    std::int64_t used = 0;
-  };
+  struct Tile;
   const Tile& tile(std::size_t number) const;
   const Tile& tile_at(Index& vertex) const;
   void release_memory() const;
@@ -92,7 +85,7 @@ class TiledGraph final : public TangentGraph {
   std::vector<double> edge_lengths_;
   Offset edges_ = 0;
   double unit_ = 1;
-  mutable std::vector<std::unique_ptr<Tile>> tiles_;
+  mutable std::vector<std::shared_ptr<Tile>> tiles_;
   mutable std::size_t last_ = 0;
   mutable std::int64_t clock_ = 0, releases_ = 0;
 };

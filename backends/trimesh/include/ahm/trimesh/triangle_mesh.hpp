@@ -26,7 +26,7 @@ using ahm::TopologyReport;
 
 /// An immutable triangle mesh in flat half-edge arrays, consistently oriented where that is possible.
 ///
-/// Faces keep their numbers. A face that was turned over has its corners 1 and 2 swapped. Vertices are renumbered in the order
+/// Faces keep their numbers. A face that was reversed has its corners 1 and 2 swapped. Vertices are renumbered in the order
 /// of the input, without unreferenced ones; copies made by splitting come last.
 ///
 /// Edges without length are contracted: their ends become one vertex, and the faces at them are dropped (`is_dropped`). No
@@ -36,13 +36,13 @@ using ahm::TopologyReport;
 class TriangleMesh {
  public:
   /// A mesh in space.
-  /// @param turned  per face, 1 if the majority orientation of its component is computed as if the face were turned over
+  /// @param counts_as_reversed  per face, 1 if the majority orientation of its component is computed as if the face were reversed
   ///                (`face_parts`); empty: no face
   /// @throws InvalidGeometry (no faces, index out of range, vertex repeated in a face, duplicate face, vertex of a
   ///         face not finite, non-manifold edge or vertex); messages list the first ten elements and the count
   static TriangleMesh from_positions(std::span<const Vec3> positions, std::span<const Triangle> faces,
                                      NonManifold non_manifold = NonManifold::error,
-                                     std::span<const std::uint8_t> turned = {});
+                                     std::span<const std::uint8_t> counts_as_reversed = {});
   /// A mesh defined only by its edge lengths.
   /// @param vertices  number of vertices
   /// @param lengths   one triple per face; length s is that of the side from corner s to corner s + 1. Finite, >= 0, within the
@@ -63,7 +63,7 @@ class TriangleMesh {
   std::span<const Half> twins() const noexcept { return topology_.half_edges().twin; }
   /// 1 where the two faces at a half-edge have opposite orientations; empty on an orientable mesh.
   std::span<const std::uint8_t> mirrored() const noexcept { return topology_.half_edges().mirrored; }
-  /// 1 where a face was turned over.
+  /// 1 where a face was reversed.
   std::span<const std::uint8_t> reversed() const noexcept { return topology_.reversed(); }
   /// One half-edge that starts at each vertex; the vertex is oriented like its face.
   std::span<const Half> corners() const noexcept { return topology_.corners(); }
@@ -99,7 +99,7 @@ class TriangleMesh {
 
  private:
   TriangleMesh(Index vertices, std::span<const Triangle> faces, NonManifold non_manifold,
-               std::span<const std::uint8_t> turned = {});
+               std::span<const std::uint8_t> counts_as_reversed = {});
   void contract(std::vector<std::uint8_t> contracted);
 
   detail::GluedMesh topology_;

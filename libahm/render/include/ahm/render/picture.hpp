@@ -64,11 +64,11 @@ struct Scene {
   /// Red, green, blue of each point, which an HTML page can show instead of the map. May be empty.
   std::span<const std::array<std::uint8_t, 3>> colors;
   /// Additional values of the point under the pointer that an HTML page displays; each may be empty.
-  struct Told {
+  struct PointDetails {
     std::span<const double> distance, spread;  ///< world units; NaN if unknown
     std::span<const Status> status;
     std::string source;  ///< the source in the format of ahm's option --source
-  } told;
+  } details;
 };
 
 /// Options of a picture.

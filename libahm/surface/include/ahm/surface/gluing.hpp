@@ -55,9 +55,10 @@ std::vector<std::pair<Index, Index>> find_duplicates(Index vertices, const FaceL
 
 /// Checks indices, corners, repeated vertices, duplicate faces and edges with more than two faces. Orients every component like
 /// the majority of its faces.
-/// @param turned  per face: 1 where the majority vote treats it as reversed; empty: none
-/// @throws InvalidGeometry, InvalidArgument (turned: another number of faces)
-Gluing glue(Index vertices, const FaceList& faces, NonManifold non_manifold, std::span<const std::uint8_t> turned = {});
+/// @param counts_as_reversed  per face: 1 where the majority vote treats it as reversed; empty: none
+/// @throws InvalidGeometry, InvalidArgument (counts_as_reversed: another number of faces)
+Gluing glue(Index vertices, const FaceList& faces, NonManifold non_manifold,
+            std::span<const std::uint8_t> counts_as_reversed = {});
 
 /// Checks the positions that faces use; others may be NaN or infinite.
 /// @param corners  vertices of the faces; those out of range are ignored
@@ -80,10 +81,11 @@ NormalizedPositions normalize_positions(std::vector<Vec3> points, std::span<cons
 /// Copies made by splitting come last.
 class GluedMesh {
  public:
-  /// @param turned  as in `glue`
+  /// @param counts_as_reversed  as in `glue`
   /// @throws InvalidGeometry (no faces, index out of range, fewer than three corners, vertex repeated in a face, duplicate
   /// face; faults non_manifold_edges, non_manifold_vertices). The message lists the first ten and the count
-  GluedMesh(Index vertices, const FaceList& faces, NonManifold non_manifold, std::span<const std::uint8_t> turned = {});
+  GluedMesh(Index vertices, const FaceList& faces, NonManifold non_manifold,
+            std::span<const std::uint8_t> counts_as_reversed = {});
 
   const TopologyReport& report() const { return report_; }
   Index vertex_count() const { return static_cast<Index>(input_of_vertex_.size()); }
@@ -129,7 +131,8 @@ class GluedMesh {
   std::vector<RowVertex> rows() const;
 
  private:
-  void build_half_edges(const FaceList& faces, NonManifold non_manifold, std::span<const std::uint8_t> turned);
+  void build_half_edges(const FaceList& faces, NonManifold non_manifold,
+                        std::span<const std::uint8_t> counts_as_reversed);
   void number_vertices(NonManifold non_manifold);
   void find_parts();
   void renumber_contracted();

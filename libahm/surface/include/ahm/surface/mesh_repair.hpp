@@ -40,14 +40,14 @@ struct RepairOptions {
 
 /// Counts of the repairs that were made.
 struct RepairCounts {
-  Index welded = 0;      ///< vertices merged with another one
-  Index shortened = 0;   ///< faces that lost corners and remain
-  Index degenerate = 0;  ///< degenerate faces dropped
-  Index not_finite = 0;  ///< faces dropped because of a vertex that is not finite
-  Index duplicates = 0;  ///< duplicate faces dropped
-  Index turned = 0;      ///< faces reversed
+  Index welded = 0;            ///< vertices merged with another one
+  Index repeated_corners = 0;  ///< faces that lost corners and remain
+  Index degenerate = 0;        ///< degenerate faces dropped
+  Index not_finite = 0;        ///< faces dropped because of a vertex that is not finite
+  Index duplicates = 0;        ///< duplicate faces dropped
+  Index reversed = 0;          ///< faces reversed
 
-  bool any() const { return welded || shortened || degenerate || not_finite || duplicates || turned; }
+  bool any() const { return welded || repeated_corners || degenerate || not_finite || duplicates || reversed; }
   bool operator==(const RepairCounts&) const = default;
 };
 
@@ -73,9 +73,9 @@ RepairedMesh repair_mesh(std::span<const Vec3> positions, const FaceList& faces,
 /// A surface built from a repaired mesh. Its rows are the input vertices; merged rows share the vertices of the row that
 /// represents them. Its faces are the remaining ones, with new numbers (`RepairedMesh::given_face`).
 ///
-/// The report is that of the built surface, then repair.welded, repair.shortened, repair.degenerate, repair.not_finite,
-/// repair.duplicates, repair.turned. The warnings are welded, faces_shortened, degenerate_dropped, not_finite_dropped,
-/// duplicates_dropped, faces_turned (each with its count), then those of the built surface. Merged vertices are not reported as
+/// The report is that of the built surface, then repair.welded, repair.repeated_corners, repair.degenerate, repair.not_finite,
+/// repair.duplicates, repair.reversed. The warnings are welded, repeated_corners, degenerate_dropped, not_finite_dropped,
+/// duplicates_dropped, faces_reversed (each with its count), then those of the built surface. Merged vertices are not reported as
 /// unreferenced.
 class RepairedSurface final : public Surface {
  public:

@@ -11,18 +11,18 @@
 
 namespace ahm {
 
-/// The priority queue of Dijkstra's algorithm. The caller provides and clears `known`, the smallest distance so far of each vertex.
-/// @tparam Known  any type with known[Index] -> Distance&
-template <class Distance, class Known>
+/// The priority queue of Dijkstra's algorithm. The caller provides and clears `distances`, the smallest distance so far of each vertex.
+/// @tparam Distances  any type with distances[Index] -> Distance&
+template <class Distance, class Distances>
 class ShortestPaths {
  public:
-  /// @param unset  value of `known` for vertices without a distance; not a valid distance
-  ShortestPaths(Known& known, Distance unset) : known_(known), unset_(unset) {}
+  /// @param unset  value of `distances` for vertices without a distance; not a valid distance
+  ShortestPaths(Distances& distances, Distance unset) : distances_(distances), unset_(unset) {}
 
   /// Stores and queues the distance if it is smaller than the current distance of the vertex.
   /// @return whether it was stored
   bool offer(Index vertex, Distance distance) {
-    Distance& known = known_[vertex];
+    Distance& known = distances_[vertex];
     if (distance == unset_ || (known != unset_ && !(distance < known))) return false;
     queue_.push({known = distance, vertex});
     return true;
@@ -40,13 +40,13 @@ class ShortestPaths {
     while (!queue_.empty()) {
       const auto [distance, vertex] = queue_.top();
       queue_.pop();
-      if (distance == known_[vertex]) settle(vertex, distance);
+      if (distance == distances_[vertex]) settle(vertex, distance);
     }
   }
 
  private:
   using Entry = std::pair<Distance, Index>;
-  Known& known_;
+  Distances& distances_;
   Distance unset_;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue_;
 };
