@@ -94,7 +94,6 @@ MapOptions map_options(const SolveOptions& options) {
 ExactMapOptions exact_options(const SolveOptions& options, Journal& journal) {
   const MapOptions map = map_options(options);
   return {.radius = map.radius,
-          .tolerance = options.tolerance,
           .frames = map.frames,
           .progress = journal.progress(),
           .threads = options.threads};

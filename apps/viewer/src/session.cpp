@@ -315,7 +315,7 @@ struct Session::Impl {
     if (settings.method == Method::exact)
       return makers.geodesics().log_map(
           source, u_axis,
-          {.radius = radius, .tolerance = settings.tolerance, .frames = frames, .progress = until(stop)});
+          {.radius = radius, .frames = frames, .progress = until(stop)});
     MapOptions heat = heat_options(settings, radius, stop);
     heat.frames = frames;
     return makers.solver(settings, stop).solve(placed.source, heat);
@@ -370,7 +370,7 @@ struct Session::Impl {
     const double radius = map_radius_of_curve(curve, radius_of(settings));
     if (settings.method == Method::exact)
       return makers.geodesics()
-          .log_map(curve.samples, {.radius = radius, .tolerance = settings.tolerance, .progress = until(stop)})
+          .log_map(curve.samples, {.radius = radius, .progress = until(stop)})
           .map;
     return makers.solver(settings, stop).solve(curve.source, heat_options(settings, radius, stop));
   }
