@@ -68,9 +68,8 @@ py::array farthest(const BodyPtr& body, const py::tuple& first, Index count, boo
     std::vector<Index> rows;
     const Vertex begin = body->vertices_near(at).at(0);
     const std::vector<Vertex> among = body->vertices_with_rows();
-    for (Vertex vertex :
-         exact ? farthest_points(body->geodesics(), begin, count, {.progress = progress}, among)
-                : farthest_points(body->graph(), begin, count, progress, among))
+    for (Vertex vertex : exact ? farthest_points(body->geodesics(), begin, count, {.progress = progress}, among)
+                               : farthest_points(body->graph(), begin, count, progress, among))
       if (const auto row = body->row(vertex)) rows.push_back(row->index);
     return rows;
   }));

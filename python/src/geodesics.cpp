@@ -45,10 +45,8 @@ Distances exact_distances(const Body& body, const Places& from, const std::optio
                           const Progress& progress) {
   const exact::PolyhedralSurface& flat = body.geodesics().triangles().surface;
   const double unit = body.geodesics().triangles().length_unit;
-  exact::ExactOptions options{.radius = radius / unit,
-                              .targets = {},
-                              .only_targets = to.has_value(),
-                              .progress = progress};
+  exact::ExactOptions options{
+      .radius = radius / unit, .targets = {}, .only_targets = to.has_value(), .progress = progress};
   if (to) options.targets = mesh_points(body, *to);
   const exact::ExactMap map = exact::exact_map(flat, mesh_points(body, from), options);
   Distances result;
@@ -74,9 +72,8 @@ py::tuple exact_distance(const BodyPtr& body, const py::tuple& sources, const py
   const Places from = places(sources);
   std::optional<Places> to;
   if (!targets.is_none()) to = places(targets.cast<py::tuple>());
-  Distances found = compute(report, py::none(), [=](const Progress& progress) {
-    return exact_distances(*body, from, to, radius, progress);
-  });
+  Distances found = compute(
+      report, py::none(), [=](const Progress& progress) { return exact_distances(*body, from, to, radius, progress); });
   return py::make_tuple(owned(std::move(found.distance)), owned(std::move(found.source)));
 }
 

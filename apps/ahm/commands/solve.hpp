@@ -38,7 +38,9 @@ struct Maps {
   LogMap map(const SolveOptions& options, const Input& input, const SourceSpec& spec, const SurfaceSource& source,
              Journal& journal) const;
   AnySolver maker() const {
-    return solver ? AnySolver(*solver) : polar ? AnySolver(*polar, exact.threads) : AnySolver(*geodesics, exact.threads);
+    return solver  ? AnySolver(*solver)
+           : polar ? AnySolver(*polar, exact.threads)
+                   : AnySolver(*geodesics, exact.threads);
   }
 
   std::optional<LogMapSolver> solver;

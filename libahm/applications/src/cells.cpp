@@ -88,8 +88,7 @@ VoronoiCells voronoi_cells(const ExactGeodesics& geodesics, std::span<const Vert
     for (Vertex vertex : vertices) sources.push_back(triangles.vertex_point(vertex));
     const double unit = geodesics.triangles().length_unit;
     const exact::ExactMap map = exact::exact_map(
-        triangles, sources,
-        {.radius = options.radius / unit, .targets = {}, .progress = options.progress});
+        triangles, sources, {.radius = options.radius / unit, .targets = {}, .progress = options.progress});
     VoronoiCells cells;
     for (Index i = 0; i < map.size(); ++i) {
       cells.labels.push_back(map.source(Vertex(i)));
