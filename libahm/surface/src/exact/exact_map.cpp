@@ -42,10 +42,11 @@ void check_reached(const PolyhedralSurface& surface, const PropagationResult& fo
   const auto check = [&](Index from, Index to, double length) {
     const double way = (distance[from] + length) * (1 + 1e-9);
     if (!(way < found.horizon) || distance[to] <= way) return;
-    throw InvalidGeometry("windows_lost",
-                          "windows were lost before they reached vertex " + std::to_string(to) +
-                              ", a neighbor of vertex " + std::to_string(from),
-                          "repair the needle triangles there, or use the polar or the heat method");
+    throw InvalidGeometry(
+        "windows_lost",
+        "windows were lost before they reached vertex " + std::to_string(to) + ", a neighbor of vertex " +
+            std::to_string(from),
+        "repair the needle triangles there, or use the polar or the heat method (paths: locally_shortest_path)");
   };
   for (Index v = 0; v < surface.vertex_count(); ++v) {
     if (!(distance[v] < found.horizon)) continue;  // most vertices, where the radius is small

@@ -257,7 +257,7 @@ class Propagation {
   void offer(Index vertex, double distance, const Ray& ray, const Place& at);
   bool has_targets() const { return !targets_of_face_.empty(); }
   /// Offers straight paths to the targets in the face of a ray's half-edge.
-  /// @param covers   covers(at): whether rays reach the place `at`, in the frame of the half-edge
+  /// @param covers  covers(at): whether rays reach the place `at`, in the frame of the half-edge
   template <class Covers>
   void offer_targets(const Ray& ray, const Covers& covers);
   void offer_targets_in_face(const Ray& ray);
