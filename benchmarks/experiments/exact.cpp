@@ -26,14 +26,6 @@ double cpu_seconds(const Work& work) {
   return static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC;
 }
 
-/// Results of maps with a tolerance.
-struct ToleranceResult {
-  double seconds = 0, error = 0;  ///< seconds per map; largest relative error of a distance
-  std::vector<double> vectors;    ///< relative errors of vectors
-};
-
-constexpr double tolerance = 1e-3;
-
 /// Relative errors of the vectors of heat maps, beyond two edges from the source. Both maps have the same axes.
 std::vector<double> vector_errors(const Surface& surface, const LogMap& exact, const LogMap& heat) {
   std::vector<double> errors;
@@ -44,23 +36,6 @@ std::vector<double> vector_errors(const Surface& surface, const LogMap& exact, c
     errors.push_back(std::hypot(a[0] - b[0], a[1] - b[1]) / exact.distance(v));
   }
   return errors;
-}
-
-ToleranceResult with_tolerance(const Surface& surface, const ExactGeodesics& geodesics, std::span<const Vertex> sources,
-                               std::span<const LogMap> exact) {
-  ToleranceResult result;
-  for (std::size_t s = 0; s < sources.size(); ++s) {
-    std::optional<LogMap> map;
-    result.seconds +=
-        cpu_seconds([&] { map.emplace(geodesics.log_map(sources[s], {.tolerance = tolerance, .progress = {}})); });
-    const std::vector<double> errors = vector_errors(surface, exact[s], *map);
-    result.vectors.insert(result.vectors.end(), errors.begin(), errors.end());
-    for (Index i = 0; i < surface.size(); ++i)
-      if (const Vertex v(i); exact[s].status(v) == Status::ok && exact[s].distance(v) > 0)
-        result.error = std::max(result.error, std::abs(map->distance(v) / exact[s].distance(v) - 1));
-  }
-  result.seconds /= static_cast<double>(sources.size());
-  return result;
 }
 
 struct HeatRow {
@@ -145,66 +120,29 @@ void measure(const Surface& surface, Table& table) {
   }
   const HeatRow heat = with_heat(surface, sources, exact);
   const CgalComparison cgal_result = cgal(surface, sources[0], exact[0]);
-  const ToleranceResult tolerant = with_tolerance(surface, *geodesics, sources, exact);
   const Paths paths = fast_paths(surface, *geodesics, sources, exact);
-  table.add({surface.name(),
-             surface.size(),
-             layout,
-             map_seconds,
-             tolerant.seconds,
-             tolerant.error,
-             quantile(tolerant.vectors, 0.5),
-             quantile(tolerant.vectors, 0.95),
-             cgal_result.seconds,
-             cgal_result.difference,
-             heat.first,
-             heat.additional,
-             quantile(heat.errors, 0.5),
-             mean(heat.errors),
-             quantile(heat.errors, 0.95),
-             quantile(heat.errors, 1),
-             paths.milliseconds,
-             quantile(paths.longer, 0.5),
-             mean(paths.longer),
-             quantile(paths.longer, 0.95),
-             quantile(paths.longer, 1)});
+  table.add({surface.name(), surface.size(), layout, map_seconds, cgal_result.seconds, cgal_result.difference,
+             heat.first, heat.additional, quantile(heat.errors, 0.5), mean(heat.errors), quantile(heat.errors, 0.95),
+             quantile(heat.errors, 1), paths.milliseconds, quantile(paths.longer, 0.5), mean(paths.longer),
+             quantile(paths.longer, 0.95), quantile(paths.longer, 1)});
 }
 
 }  // namespace
 
 Table exact_compared(const Settings& settings) {
-  Table table({"mesh",
-               "vertices",
-               "layout s",
-               "exact map s",
-               "map at 1e-3 s",
-               "distance error at 1e-3",
-               "vector median at 1e-3",
-               "vector 95% at 1e-3",
-               "CGAL s",
-               "difference / diameter",
-               "first heat map s",
-               "additional heat map s",
-               "vector median",
-               "vector mean",
-               "vector 95%",
-               "vector max",
-               "fast path ms",
-               "fast path longer median",
-               "fast path longer mean",
-               "fast path longer 95%",
-               "fast path longer max"});
+  Table table({"mesh", "vertices", "layout s", "exact map s", "CGAL s", "difference / diameter", "first heat map s",
+               "additional heat map s", "vector median", "vector mean", "vector 95%", "vector max", "fast path ms",
+               "fast path longer median", "fast path longer mean", "fast path longer 95%", "fast path longer max"});
   std::vector<Index> sizes{640};
   if (!settings.toy) sizes.insert(sizes.end(), {2560, 10000, 40000, 160000});
   for (Index n : sizes) measure(Surface("sphere", test::split_icosphere(n)), table);
   measure(Surface("torus", torus(settings.toy ? 640 : 10000)), table);
   for_user_surfaces(settings, 50000, [&](const Surface& surface) { measure(surface, table); });
   table.seen = fmt::format(
-      "Exact maps take n^{:.2f} on all shapes, {:.2f} of the first map by heat (median), with a tolerance of 1e-3 "
-      "n^{:.2f}. Vectors of heat are off by {:.3f} of the distance (median of the medians).",
+      "Exact maps take n^{:.2f} on all shapes, {:.2f} of the first map by heat (median). Vectors of heat are off by "
+      "{:.3f} of the distance (median of the medians).",
       fitted_order(table.numbers("vertices"), table.numbers("exact map s")),
       quantile(table.numbers("exact map s"), 0.5) / quantile(table.numbers("first heat map s"), 0.5),
-      fitted_order(table.numbers("vertices"), table.numbers("map at 1e-3 s")),
       quantile(table.numbers("vector median"), 0.5));
   return table;
 }

@@ -13,7 +13,7 @@ from ._fields import distance_and_nearest
 from ._maps import LogMap
 from ._options import checked
 from ._progress import Progress, reporting
-from ._solvers import ExactGeodesics, Maker, PolarMapSolver, as_body, as_maker, chosen_maker, tolerance_of
+from ._solvers import ExactGeodesics, Maker, PolarMapSolver, as_body, as_maker, chosen_maker
 from .typing import Source, Sources, SurfaceLike, Vector, Matrix
 
 
@@ -28,8 +28,8 @@ class Stroke(NamedTuple):
 
 
 def stroke(solver: SurfaceLike, points: Sources, *, closed: bool = False, shape: str = "line", positions: Optional[Matrix] = None,
-           method: Optional[str] = None, tolerance: Optional[float] = None, radius: Optional[float] = None,
-           frames: bool = True, progress: Progress = None) -> Stroke:
+           method: Optional[str] = None, radius: Optional[float] = None, frames: bool = True,
+           progress: Progress = None) -> Stroke:
     """Coordinates along a curve: the coordinates of the nearest point of the curve, plus the log map from there.
 
     solver : a `LogMapSolver`, an `ExactGeodesics`, or a surface (a mesh or a cloud).
@@ -40,7 +40,6 @@ def stroke(solver: SurfaceLike, points: Sources, *, closed: bool = False, shape:
     shape : "line": u is the arclength. "circle": a closed curve becomes a circle around the origin of the (u, v) plane.
     positions : (k, 2) coordinates (u, v) of the points, world units, linear between them; None: (arclength, 0).
     method : for a surface: "heat" (default), or "exact" over the flat triangles of a mesh.
-    tolerance : maximum relative error of exact maps, as in `ExactGeodesics`.
     radius, frames, progress : as in `LogMapSolver.log_map`.
 
     >>> import ahm
@@ -50,7 +49,7 @@ def stroke(solver: SurfaceLike, points: Sources, *, closed: bool = False, shape:
 
     Raises ValueError naming the argument, the index and the value.
     """
-    made = as_maker(solver, method, tolerance=tolerance)
+    made = as_maker(solver, method)
     if isinstance(made, PolarMapSolver):
         raise ValueError("method: polar maps cannot start at a curve; use 'heat' or 'exact'")
     at = places.points(points, "points", made.surface)
@@ -62,7 +61,7 @@ def stroke(solver: SurfaceLike, points: Sources, *, closed: bool = False, shape:
             raise ValueError("positions: cannot be combined with `shape`; use one of them")
     shaped = (arguments.flag(closed, "closed"), shape == "circle", checked(radius=radius, frames=frames))
     with reporting(progress) as report:
-        found, drawn, length, gap, jump = _core.stroke(made._maker, at, uv, *shaped, report)
+        found, drawn, length, gap, jump = _core.stroke(made._core, at, uv, *shaped, report)
     return Stroke(LogMap(found, _StrokeRecipe(made, at, np.array(uv), shaped)), drawn, length, gap, jump)
 
 
@@ -82,7 +81,7 @@ class _StrokeRecipe(NamedTuple):
         pass
 
     def make(self, number: int) -> Any:
-        return _core.stroke(self.maker._maker, self.at, self.uv, *self.shaped, None)[0]
+        return _core.stroke(self.maker._core, self.at, self.uv, *self.shaped, None)[0]
 
 
 class Cells(NamedTuple):
@@ -92,14 +91,12 @@ class Cells(NamedTuple):
     distance: np.ndarray  #: (n,) geodesic distance from that source, world units; NaN in components without a source
 
 
-def cells(surface: SurfaceLike, sources: Sources, *, method: Optional[str] = None, tolerance: Optional[float] = None,
-          progress: Progress = None) -> Cells:
+def cells(surface: SurfaceLike, sources: Sources, *, method: Optional[str] = None, progress: Progress = None) -> Cells:
     """Geodesic Voronoi cells: for every row, which source is nearest. Takes one pass for any number of sources.
 
     surface : a `Surface`, a solver, or what `ahm.surface` takes.
     sources : rows, positions, `(face, barycentric)`, `((row, row), t)`. A row may occur only once.
     method : "unfold" (default) or "exact", as in `distance`. If `surface` is an `ExactGeodesics`, the default is "exact".
-    tolerance : maximum relative error of exact distances, as in `ExactGeodesics`.
     progress : as in `LogMapSolver`.
 
     >>> import ahm
@@ -115,7 +112,7 @@ def cells(surface: SurfaceLike, sources: Sources, *, method: Optional[str] = Non
     _, first = np.unique(rows[to_rows], return_index=True)
     for again in np.setdiff1d(to_rows, to_rows[first]):
         raise ValueError(f"sources[{again}]: row {rows[again]} occurs twice")
-    distance, labels = distance_and_nearest(surface, sources, method=method, tolerance=tolerance, progress=progress)
+    distance, labels = distance_and_nearest(surface, sources, method=method, progress=progress)
     return Cells(labels, distance)
 
 
@@ -126,13 +123,13 @@ def _unfold_or_exact(surface: Any, method: Optional[str]) -> str:
 
 
 def farthest_points(surface: SurfaceLike, count: int, first: Source = 0, *, method: Optional[str] = None,
-                    tolerance: Optional[float] = None, progress: Progress = None) -> np.ndarray:
+                    progress: Progress = None) -> np.ndarray:
     """Farthest point sampling: `count` rows, beginning with `first`; each is the farthest from the previous ones.
 
     surface : a `Surface`, a solver, or what `ahm.surface` takes.
     count : number of rows in the result, from 1 to the number of rows of the surface.
     first : a row, or another point, whose nearest row is used.
-    method, tolerance : as in `cells`.
+    method : as in `cells`.
     progress : as in `LogMapSolver`.
 
     >>> import ahm
@@ -143,11 +140,9 @@ def farthest_points(surface: SurfaceLike, count: int, first: Source = 0, *, meth
     """
     on = as_body(surface)
     by = _unfold_or_exact(surface, method)
-    within = tolerance_of(surface, by, tolerance)
     at = places.point(first, "first", on)
     with reporting(progress) as report:
-        return _core.farthest(on._body, at, arguments.integer(count, "count", 1),
-                              within if by == "exact" else None, report)
+        return _core.farthest(on._body, at, arguments.integer(count, "count", 1), by == "exact", report)
 
 
 class Center(NamedTuple):
@@ -172,8 +167,7 @@ class Center(NamedTuple):
 
 
 def karcher_mean(solver: SurfaceLike, points: Sources, weights: Optional[Vector] = None, *, start: Optional[Source] = None,
-                 method: str = "auto", tolerance: Optional[float] = None, max_maps: int = 50, radius: Optional[float] = None,
-                 progress: Progress = None) -> Center:
+                 method: str = "auto", max_maps: int = 50, radius: Optional[float] = None, progress: Progress = None) -> Center:
     """The Karcher mean (Riemannian center of mass): a local minimum of the weighted sum of squared distances [Kar77].
 
     solver : a `LogMapSolver`, a `PolarMapSolver`, an `ExactGeodesics`, or a surface.
@@ -181,7 +175,6 @@ def karcher_mean(solver: SurfaceLike, points: Sources, weights: Optional[Vector]
     weights : (k,) numbers >= 0, not all 0; None: all equal.
     start : the search begins at the row nearest to this point; None: near the point with the largest weight.
     method : for a surface: "auto" (default), "polar", "heat" or "exact", as in `log_map`.
-    tolerance : maximum relative error of exact maps, as in `ExactGeodesics`.
     max_maps : maximum number of log maps, >= 1; each step of the search computes one.
     radius : radius of the maps, world units. It must cover every point, from the center and from the start. None: no limit.
     progress : as in `LogMapSolver`.
@@ -193,11 +186,11 @@ def karcher_mean(solver: SurfaceLike, points: Sources, weights: Optional[Vector]
 
     Raises ValueError naming the argument, the index and the value, also for points in different components.
     """
-    return _center(chosen_maker(solver, method, tolerance=tolerance), points, weights, False, start, max_maps, radius, progress)
+    return _center(chosen_maker(solver, method), points, weights, False, start, max_maps, radius, progress)
 
 
 def geometric_median(solver: SurfaceLike, points: Sources, weights: Optional[Vector] = None, *, start: Optional[Source] = None,
-                     method: str = "auto", tolerance: Optional[float] = None, max_maps: int = 50, radius: Optional[float] = None,
+                     method: str = "auto", max_maps: int = 50, radius: Optional[float] = None,
                      progress: Progress = None) -> Center:
     """The geometric median: a local minimum of the weighted sum of distances, near the start [FVJ09].
 
@@ -207,7 +200,7 @@ def geometric_median(solver: SurfaceLike, points: Sources, weights: Optional[Vec
     >>> ahm.geometric_median(ahm.shapes.plane(9, 9), [0, 8, 72], [3.0, 1.0, 1.0]).row
     0
     """
-    return _center(chosen_maker(solver, method, tolerance=tolerance), points, weights, True, start, max_maps, radius, progress)
+    return _center(chosen_maker(solver, method), points, weights, True, start, max_maps, radius, progress)
 
 
 def _center(made: Maker, points: Any, weights: Any, median: bool, start: Any, max_maps: int, radius: Optional[float],
@@ -218,7 +211,7 @@ def _center(made: Maker, points: Any, weights: Any, median: bool, start: Any, ma
     begin = None if start is None else places.point(start, "start", on)
     with reporting(progress) as report:
         row, offset, position, spread, maps, converged, face, inside, seen = _core.center(
-            made._maker, at, given, median, begin, checked(max_maps=max_maps, radius=radius), report)
+            made._core, at, given, median, begin, checked(max_maps=max_maps, radius=radius), report)
     point = (face, inside) if face is not None and inside is not None else position if on._body.has_positions else None
     residual = _residual(seen, given if len(given) else np.ones(len(seen)), median, 1e-9 * on.mean_edge_length)
     return Center(row, offset, position, spread, maps, converged, residual, point)

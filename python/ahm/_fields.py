@@ -11,7 +11,7 @@ from . import _core
 from . import _places as places
 from ._options import checked
 from ._progress import Progress, reporting
-from ._solvers import as_body, as_solver, tolerance_of
+from ._solvers import as_body, as_solver
 from .typing import Sources, SurfaceLike, Vector, Matrix
 
 if TYPE_CHECKING:
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def distance(surface: SurfaceLike, sources: Sources, *, targets: Optional[Sources] = None, method: str = "unfold",
-             radius: Optional[float] = None, tolerance: Optional[float] = None, progress: Progress = None) -> np.ndarray:
+             radius: Optional[float] = None, progress: Progress = None) -> np.ndarray:
     """Geodesic distance from the nearest of one or more sources, world units.
 
     surface : a `Surface`, a solver (method "heat" reuses the factors of a `LogMapSolver`), or what `ahm.surface` takes.
@@ -31,7 +31,6 @@ def distance(surface: SurfaceLike, sources: Sources, *, targets: Optional[Source
         "heat" takes one solve each with A and B and smooths over about one edge midway between sources. On meshes it uses a
         wavefront, too.
     radius : rows beyond this distance get NaN; world units. Not for method "heat".
-    tolerance : maximum relative error of exact distances, as in `ExactGeodesics`.
     progress : as in `LogMapSolver`.
 
     >>> import ahm
@@ -43,13 +42,11 @@ def distance(surface: SurfaceLike, sources: Sources, *, targets: Optional[Source
 
     Rows that are not connected to a source get NaN. Raises ValueError naming the argument, the index and the value.
     """
-    return distance_and_nearest(surface, sources, targets=targets, method=method, radius=radius, tolerance=tolerance,
-                                progress=progress)[0]
+    return distance_and_nearest(surface, sources, targets=targets, method=method, radius=radius, progress=progress)[0]
 
 
 def distance_and_nearest(surface: SurfaceLike, sources: Sources, *, targets: Optional[Sources] = None, method: str = "unfold",
-                         radius: Optional[float] = None, tolerance: Optional[float] = None,
-                         progress: Progress = None) -> tuple:
+                         radius: Optional[float] = None, progress: Progress = None) -> tuple:
     """The result of `distance`, and the number of the nearest source: int32, -1 where none is connected; None for method "heat".
 
     Arguments and errors as in `distance`.
@@ -60,7 +57,6 @@ def distance_and_nearest(surface: SurfaceLike, sources: Sources, *, targets: Opt
     """
     on = as_body(surface)
     arguments.choice(method, "method", ("unfold", "heat", "exact"))
-    within = tolerance_of(surface, method, tolerance)
     at = places.points(sources, "sources", on)
     reach = float("inf") if radius is None else arguments.real(radius, "radius", positive=True, finite=False)
     if method == "exact":
@@ -68,7 +64,7 @@ def distance_and_nearest(surface: SurfaceLike, sources: Sources, *, targets: Opt
         if to is not None and len(to[2]) == 0:
             return np.empty(0), np.empty(0, np.int32)
         with reporting(progress) as report:
-            return _core.exact_distance(on._body, at, to, reach, within, report)
+            return _core.exact_distance(on._body, at, to, reach, report)
     rows = None if targets is None else _target_rows(targets, on, method)
     with reporting(progress) as report:
         if method == "heat":

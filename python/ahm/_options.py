@@ -23,13 +23,6 @@ def _radius(value: Any, name: str) -> float:
     return arguments.real(value, name, positive=True, finite=False)
 
 
-def _tolerance(value: Any, name: str) -> float:
-    tolerance = arguments.real(value, name)
-    if not 0 <= tolerance <= 0.1:
-        raise ValueError(f"{name}: {tolerance} is outside [0, 0.1]")
-    return tolerance
-
-
 CHECKS: Dict[str, Callable[[Any, str], Any]] = {
     "t_coef": _positive,
     "variant": _one_of("adaptive", "localized"),
@@ -41,7 +34,6 @@ CHECKS: Dict[str, Callable[[Any, str], Any]] = {
     "threads": _whole(0, 4096),
     "windows": _whole(0, 2**62),
     "radius": _radius,
-    "tolerance": _tolerance,
     "frames": arguments.flag,
     "spread": arguments.flag,
     "distances": arguments.flag,

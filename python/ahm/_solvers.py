@@ -114,11 +114,6 @@ class LogMapSolver(_Maker):
             self._core = _core.Solver(self.surface._body, self.options, report)
 
     @property
-    def _maker(self) -> Any:
-        """The argument `maker` of functions of the C++ extension."""
-        return self._core
-
-    @property
     def strategy(self) -> str:
         """The strategy in use: "global" or "march"."""
         return self._core.strategy
@@ -212,10 +207,6 @@ class PolarMapSolver(_Maker):
         with reporting(progress) as report:
             self._core = _core.PolarSolver(self.surface._body, self.options.get("windows"), self.options["threads"], report)
 
-    @property
-    def _maker(self) -> Any:
-        return self._core
-
     def log_map(self, source: Source, *, u_axis: Optional[Vector] = None, radius: Optional[float] = None, frames: bool = True,
                 progress: Progress = None) -> LogMap:
         """The polar map of one source. Arguments and errors as in `LogMapSolver.log_map`.
@@ -262,9 +253,6 @@ class ExactGeodesics(_Maker):
     can share it.
 
     surface : a mesh whose faces are flat, or what `ahm.surface` takes.
-    tolerance : maximum relative error of distances, in [0, 0.1]. 0: exact. Above 0, the time is nearly linear in the number of
-        rows. Directions may then be off by about sqrt(2 tolerance) radians. Where two paths differ by less than the tolerance,
-        the direction may be that of either.
     progress : None, True (a progress bar), or a callable that takes (stage, fraction).
 
     Raises ValueError if the surface has no flat faces (clouds, grids, twisted polygons) or if a face has no area.
@@ -279,18 +267,15 @@ class ExactGeodesics(_Maker):
 
     method = "exact"
 
-    def __init__(self, surface: SurfaceLike, *, tolerance: float = 0.0, progress: Progress = None) -> None:
+    def __init__(self, surface: SurfaceLike, *, progress: Progress = None) -> None:
         self.surface = as_body(surface)
-        self.tolerance = float(checked(tolerance=tolerance)["tolerance"])
         self._core = self.surface._body
         with reporting(progress) as report:
             self._core.lay_out(report)
 
-    def log_map(self, source: Source, *, u_axis: Optional[Vector] = None, radius: Optional[float] = None,
-                tolerance: Optional[float] = None, frames: bool = True, progress: Progress = None) -> LogMap:
+    def log_map(self, source: Source, *, u_axis: Optional[Vector] = None, radius: Optional[float] = None, frames: bool = True,
+                progress: Progress = None) -> LogMap:
         """The exact log map of one source. Arguments and errors as in `LogMapSolver.log_map`. A small radius saves time.
-
-        tolerance : tolerance of this map; None: that of the constructor.
 
         >>> import ahm
         >>> m = ahm.ExactGeodesics(ahm.shapes.plane(4, 3)).log_map(((0, 1), 0.5), u_axis=[1, 0, 0])
@@ -298,12 +283,10 @@ class ExactGeodesics(_Maker):
         [[-0.5, 0.0], [2.5, 2.0]]
         """
         at = places.point(source, "source", self.surface)
-        within = self.tolerance if tolerance is None else tolerance
-        return self._solve(at, u_axis, progress, radius=radius, tolerance=within, frames=frames)[0]
+        return self._solve(at, u_axis, progress, radius=radius, frames=frames)[0]
 
-    def log_maps(self, sources: Sources, *, u_axis: Optional[Vector] = None, radius: Optional[float] = None,
-                 tolerance: Optional[float] = None, frames: bool = False, threads: int = 0,
-                 progress: Progress = None) -> List[LogMap]:
+    def log_maps(self, sources: Sources, *, u_axis: Optional[Vector] = None, radius: Optional[float] = None, frames: bool = False,
+                 threads: int = 0, progress: Progress = None) -> List[LogMap]:
         """One map per source, several at a time, with the same results as `log_map`.
 
         Arguments and errors as in `log_map` and `LogMapSolver.log_maps`.
@@ -313,33 +296,23 @@ class ExactGeodesics(_Maker):
         ['exact', 'exact']
         """
         at = places.points(sources, "sources", self.surface)
-        within = self.tolerance if tolerance is None else tolerance
-        return self._solve(at, u_axis, progress, radius=radius, tolerance=within, frames=frames, threads=threads)
+        return self._solve(at, u_axis, progress, radius=radius, frames=frames, threads=threads)
 
     def _found(self, at: tuple, axis: Any, options: Dict[str, Any], report: Any) -> list:
         return _core.exact_maps(self._core, at, axis, options, report)
 
-    @property
-    def _maker(self) -> Any:
-        return self._core, self.tolerance
-
     def __reduce__(self) -> tuple:
-        return reduced(_geodesics_again, self.surface, self.tolerance)
+        return reduced(ExactGeodesics, self.surface)
 
     def __repr__(self) -> str:
         return f"<ahm.ExactGeodesics: on {self.surface!r}>"
-
-
-def _geodesics_again(on: Surface, tolerance: float) -> ExactGeodesics:
-    return ExactGeodesics(on, tolerance=tolerance)
 
 
 Maker = Union[LogMapSolver, PolarMapSolver, ExactGeodesics]
 
 
 def log_map(surface: SurfaceLike, source: Source, *, method: str = "auto", u_axis: Optional[Vector] = None,
-            radius: Optional[float] = None, tolerance: Optional[float] = None, frames: bool = True, progress: Progress = None,
-            **options: object) -> LogMap:
+            radius: Optional[float] = None, frames: bool = True, progress: Progress = None, **options: object) -> LogMap:
     """The log map of one source: direction and distance of every row. For many sources on one surface use a `SurfaceSolver`.
 
     surface : a `Surface`, a solver, or what `ahm.surface` takes.
@@ -348,7 +321,6 @@ def log_map(surface: SurfaceLike, source: Source, *, method: str = "auto", u_axi
         smooth on noisy clouds. "exact": shortest paths over the flat triangles of a mesh. "auto" (default): "polar" on meshes and
         on clouds with little noise, otherwise "heat"; also "heat" if `options` contains options of this method.
         `LogMap.method` is the method that was used.
-    tolerance : maximum relative error of exact maps, as in `ExactGeodesics`.
     u_axis, radius, frames, progress : as in `LogMapSolver.log_map`.
     options : threads; for method "heat" also t_coef, variant and other options of `LogMapSolver`.
 
@@ -359,29 +331,27 @@ def log_map(surface: SurfaceLike, source: Source, *, method: str = "auto", u_axi
 
     Raises ValueError naming the argument, the index and the value; NotPositiveDefinite, ResourceExhausted.
     """
-    maker = chosen_maker(surface, method, dict(expected_maps=1, progress=progress, **options), tolerance)
+    maker = chosen_maker(surface, method, dict(expected_maps=1, progress=progress, **options))
     return maker.log_map(source, u_axis=u_axis, radius=radius, frames=frames, progress=progress)
 
 
-def chosen_maker(thing: Any, method: str, options: Optional[Dict[str, Any]] = None, tolerance: Optional[float] = None) -> Maker:
+def chosen_maker(thing: Any, method: str, options: Optional[Dict[str, Any]] = None) -> Maker:
     """Like `as_maker`, but accepts the method "auto": the method suggested for the surface, or heat if an option requires it."""
     arguments.choice(method, "method", ("auto", "polar", "heat", "exact"))
     thing = getattr(thing, "_solver", thing)
     if method != "auto":
-        return as_maker(thing, method, options, tolerance)
+        return as_maker(thing, method, options)
     if isinstance(thing, (LogMapSolver, PolarMapSolver, ExactGeodesics)):
-        return as_maker(thing, None, options, tolerance)
-    if tolerance is not None or set(options or {}) - {"expected_maps", "progress", "threads"}:
-        return as_maker(thing, "heat", options, tolerance)
+        return as_maker(thing, None, options)
+    if set(options or {}) - {"expected_maps", "progress", "threads"}:
+        return as_maker(thing, "heat", options)
     return as_maker(thing, _core.choose_method(as_body(thing)._body), options)
 
 
-def as_maker(thing: Any, method: Optional[str] = None, options: Optional[Dict[str, Any]] = None,
-             tolerance: Optional[float] = None) -> Maker:
+def as_maker(thing: Any, method: Optional[str] = None, options: Optional[Dict[str, Any]] = None) -> Maker:
     """A solver for this method. `thing` is returned if it is such a solver; otherwise one is made from its surface.
 
     method : None: the method of `thing` if it is a solver, otherwise heat.
-    tolerance : None: that of `thing`.
     """
     if method is not None:
         arguments.choice(method, "method", ("polar", "heat", "exact"))
@@ -394,24 +364,13 @@ def as_maker(thing: Any, method: Optional[str] = None, options: Optional[Dict[st
     if unknown:
         problem = "options of an existing solver cannot be changed" if ready else f"method {by!r} has no such option"
         raise TypeError(f"{unknown[0]}: {problem}")
-    within = tolerance_of(thing, by or "heat", tolerance)
-    if ready and tolerance is None:
+    if ready:
         return thing
     if by == "exact":
-        return ExactGeodesics(as_body(thing), tolerance=within, progress=given.get("progress"))
+        return ExactGeodesics(as_body(thing), progress=given.get("progress"))
     if by == "polar":
         return PolarMapSolver(as_body(thing), threads=given.get("threads") or 0, progress=given.get("progress"))
     return LogMapSolver(as_body(thing), **given)
-
-
-def tolerance_of(thing: Any, method: str, tolerance: Optional[float]) -> float:
-    """The tolerance of exact maps: the argument, or else that of an `ExactGeodesics`, or else 0. Other methods have none."""
-    thing = getattr(thing, "_solver", thing)
-    if tolerance is None:
-        return thing.tolerance if isinstance(thing, ExactGeodesics) else 0.0
-    if method != "exact":
-        raise TypeError("tolerance: requires method 'exact'")
-    return float(checked(tolerance=tolerance)["tolerance"])
 
 
 def as_solver(thing: Any) -> LogMapSolver:

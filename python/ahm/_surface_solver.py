@@ -24,7 +24,6 @@ class SurfaceSolver:
 
     surface : a `Surface`, or what `ahm.surface` takes.
     method : "auto" (the method suggested for the surface), "polar", "heat" or "exact", as in `log_map`.
-    tolerance : maximum relative error of exact maps, as in `ExactGeodesics`.
     options : threads and progress; for method "heat" also t_coef, variant and other options of `LogMapSolver`.
 
     Functions that take a solver (`cells`, `atlas`, `karcher_mean`, ...) also accept a SurfaceSolver.
@@ -39,9 +38,8 @@ class SurfaceSolver:
     Raises ValueError naming the option; NotPositiveDefinite, ResourceExhausted.
     """
 
-    def __init__(self, surface: SurfaceLike, method: str = "auto", *, tolerance: Optional[float] = None,
-                 **options: object) -> None:
-        self._solver: Any = chosen_maker(surface, method, dict(options), tolerance)
+    def __init__(self, surface: SurfaceLike, method: str = "auto", **options: object) -> None:
+        self._solver: Any = chosen_maker(surface, method, dict(options))
 
     @property
     def surface(self) -> Surface:
@@ -83,10 +81,8 @@ class SurfaceSolver:
         >>> ahm.SurfaceSolver(ahm.shapes.plane(4, 2)).distance([0, 3])[:4].round(9).tolist()
         [0.0, 1.0, 1.0, 0.0]
         """
-        if self.method == "exact":
-            return _distance(self.surface, sources, method="exact", radius=radius, tolerance=self._solver.tolerance,
-                             progress=progress)
-        return _distance(self.surface, sources, radius=radius, progress=progress)
+        method = "exact" if self.method == "exact" else "unfold"
+        return _distance(self.surface, sources, method=method, radius=radius, progress=progress)
 
     def path(self, start: Source, end: Source, *, progress: Progress = None) -> Optional[Path]:
         """The shortest path between two points: exact over flat faces, on clouds over tangent planes. None if not connected.

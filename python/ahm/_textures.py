@@ -143,7 +143,7 @@ class Atlas(NamedTuple):
 
 
 def atlas(solver: SurfaceLike, sources: Optional[Sources] = None, *, charts: int = 20, max_distortion: Optional[float] = None,
-          method: Optional[str] = None, tolerance: Optional[float] = None, size: int = 2048, margin: int = 4,
+          method: Optional[str] = None, size: int = 2048, margin: int = 4,
           progress: Progress = None) -> Atlas:
     """A texture atlas: geodesic Voronoi cells around sources, each flattened by the log map from its source.
 
@@ -151,7 +151,6 @@ def atlas(solver: SurfaceLike, sources: Optional[Sources] = None, *, charts: int
     sources : k points, one per chart. Charts start at rows; for other points the nearest row is used. None: farthest points.
     charts : number of farthest points if `sources` is None.
     method : for a surface: "heat" (default), "polar", or "exact": exact cells and charts over the flat triangles of a mesh.
-    tolerance : maximum relative error of exact maps, as in `ExactGeodesics`.
     max_distortion : add sources until the triangles have at most this distortion, except for 1 % of a chart's area; > 1. None: add
         no sources.
     size : side of the square texture, texels.
@@ -165,10 +164,10 @@ def atlas(solver: SurfaceLike, sources: Optional[Sources] = None, *, charts: int
 
     Raises ValueError naming the argument.
     """
-    made = as_maker(solver, method, tolerance=tolerance)
+    made = as_maker(solver, method)
     at = None if sources is None else places.points(sources, "sources", made.surface)
     options = checked(max_distortion=max_distortion, size=size)
     options["margin"] = arguments.integer(margin, "margin")
     with reporting(progress) as report:
-        points, begin, corners, *rest = _core.atlas(made._maker, at, arguments.integer(charts, "charts", 1), options, report)
+        points, begin, corners, *rest = _core.atlas(made._core, at, arguments.integer(charts, "charts", 1), options, report)
     return Atlas(points, as_faces(begin, corners), *rest)

@@ -29,10 +29,8 @@ namespace {
 
 LogMap solve(const Maker& maker, const SurfaceCurve& curve, const MapOptions& options) {
   if (const Solver* solver = maker.solver()) return solver->solver.solve(curve.source, options);
-  ExactMapOptions exact = maker.exact();
-  exact.radius = options.radius;
-  exact.frames = options.frames;
-  exact.progress = options.progress.value_or(Progress{});
+  const ExactMapOptions exact{
+      .radius = options.radius, .frames = options.frames, .progress = options.progress.value_or(Progress{})};
   return maker.body()->geodesics().log_map(curve.samples, exact).map;
 }
 
@@ -62,20 +60,16 @@ py::tuple stroke(const py::object& maker, const py::tuple& points, const Doubles
 }
 
 /// Farthest point sampling.
-/// @param tolerance  maximum relative error of exact distances; None: distances by a front
+/// @param exact  exact distances; otherwise by a front
 /// @return rows
-py::array farthest(const BodyPtr& body, const py::tuple& first, Index count, const py::object& tolerance,
-                   const py::object& report) {
+py::array farthest(const BodyPtr& body, const py::tuple& first, Index count, bool exact, const py::object& report) {
   const Places at = places(first);
-  std::optional<double> within;
-  if (!tolerance.is_none()) within = tolerance.cast<double>();
   return owned(compute(report, py::none(), [=](const Progress& progress) {
     std::vector<Index> rows;
     const Vertex begin = body->vertices_near(at).at(0);
     const std::vector<Vertex> among = body->vertices_with_rows();
-    for (Vertex vertex :
-         within ? farthest_points(body->geodesics(), begin, count, {.tolerance = *within, .progress = progress}, among)
-                : farthest_points(body->graph(), begin, count, progress, among))
+    for (Vertex vertex : exact ? farthest_points(body->geodesics(), begin, count, {.progress = progress}, among)
+                               : farthest_points(body->graph(), begin, count, progress, among))
       if (const auto row = body->row(vertex)) rows.push_back(row->index);
     return rows;
   }));
@@ -118,13 +112,11 @@ void place(const Maker& by, std::span<const Source> points, double radius, Found
     source = body.surface()->source(*point).source;
     if (const auto* inside = std::get_if<FacePoint>(&*point)) found.face = *inside;
   }
-  ExactMapOptions exact = by.exact();
-  exact.radius = radius;
-  exact.frames = true;
   const auto map = [&] {
     if (by.solver() != nullptr)
       return by.solver()->solver.solve(source, {.radius = radius, .frames = true, .spread = false});
-    if (by.polar() == nullptr) return body.geodesics().log_map(point.value(), {}, exact);
+    if (by.polar() == nullptr)
+      return body.geodesics().log_map(point.value(), {}, {.radius = radius, .frames = true, .progress = {}});
     const PolarMapOptions options{.radius = radius, .frames = true};
     return point ? by.polar()->solver.log_map(*point, {}, options) : by.polar()->solver.log_map(source, options);
   }();

@@ -43,7 +43,7 @@ constexpr Advice advices[] = {
     {"polygons_too_large", "make the mesh with discretization='refined'"},
     {"twisted_faces", "make the mesh with discretization='polygons'"},
     {"windows_without_end", "repair the mesh, or use method 'heat'"},
-    {"windows_lost", "repair the needle triangles there, use tolerance=1e-9, or use method 'heat'"},
+    {"windows_lost", "repair the needle triangles there, or use method 'polar' or 'heat' (paths: fast=True)"},
 };
 
 std::string worded(const Error& error) {

@@ -42,14 +42,11 @@ struct Distances {
 
 /// Exact distances of targets, or of all rows without targets. The lengths of `exact::ExactMap` are in units of the triangles.
 Distances exact_distances(const Body& body, const Places& from, const std::optional<Places>& to, double radius,
-                          double tolerance, const Progress& progress) {
+                          const Progress& progress) {
   const exact::PolyhedralSurface& flat = body.geodesics().triangles().surface;
   const double unit = body.geodesics().triangles().length_unit;
-  exact::ExactOptions options{.radius = radius / unit,
-                              .tolerance = tolerance,
-                              .targets = {},
-                              .only_targets = to.has_value(),
-                              .progress = progress};
+  exact::ExactOptions options{
+      .radius = radius / unit, .targets = {}, .only_targets = to.has_value(), .progress = progress};
   if (to) options.targets = mesh_points(body, *to);
   const exact::ExactMap map = exact::exact_map(flat, mesh_points(body, from), options);
   Distances result;
@@ -71,13 +68,12 @@ Distances exact_distances(const Body& body, const Places& from, const std::optio
 }
 
 py::tuple exact_distance(const BodyPtr& body, const py::tuple& sources, const py::object& targets, double radius,
-                         double tolerance, const py::object& report) {
+                         const py::object& report) {
   const Places from = places(sources);
   std::optional<Places> to;
   if (!targets.is_none()) to = places(targets.cast<py::tuple>());
-  Distances found = compute(report, py::none(), [=](const Progress& progress) {
-    return exact_distances(*body, from, to, radius, tolerance, progress);
-  });
+  Distances found = compute(
+      report, py::none(), [=](const Progress& progress) { return exact_distances(*body, from, to, radius, progress); });
   return py::make_tuple(owned(std::move(found.distance)), owned(std::move(found.source)));
 }
 

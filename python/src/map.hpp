@@ -34,7 +34,7 @@ using PolarSolverPtr = std::shared_ptr<PolarSolver>;
 /// Computes maps for applications: by a solver, or by the exact geodesics of a body.
 class Maker {
  public:
-  /// @param given  a Solver, a PolarSolver, or a Body and the tolerance of its exact maps
+  /// @param given  a Solver, a PolarSolver, or a Body for exact maps
   explicit Maker(const py::object& given);
 
   const BodyPtr& body() const { return solver_ ? solver_->body : polar_ ? polar_->body : body_; }
@@ -46,16 +46,13 @@ class Maker {
   AnySolver maps() const {
     if (solver_) return {solver_->solver};
     if (polar_) return {polar_->solver, polar_->threads};
-    return {body_->geodesics(), exact()};
+    return body_->geodesics();
   }
-  /// Options of exact maps: the tolerance.
-  ExactMapOptions exact() const { return {.tolerance = tolerance_, .progress = {}}; }
 
  private:
   SolverPtr solver_;
   PolarSolverPtr polar_;
   BodyPtr body_;
-  double tolerance_ = 0;
 };
 
 /// A log map by vertices and by rows.

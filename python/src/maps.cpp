@@ -3,7 +3,6 @@
 #include <atomic>
 #include <cmath>
 #include <iterator>
-#include <tuple>
 #include <utility>
 
 #include "ahm/error.hpp"
@@ -37,7 +36,7 @@ Maker::Maker(const py::object& given) {
   else if (py::isinstance<PolarSolver>(given))
     polar_ = given.cast<PolarSolverPtr>();
   else
-    std::tie(body_, tolerance_) = given.cast<std::pair<BodyPtr, double>>();
+    body_ = given.cast<BodyPtr>();
 }
 
 namespace {
@@ -157,7 +156,6 @@ py::list exact_maps(const BodyPtr& body, const py::tuple& sources, const py::obj
                     const py::object& report) {
   ExactMapOptions o;
   read(options, "radius", o.radius);
-  read(options, "tolerance", o.tolerance);
   read(options, "frames", o.frames);
   unsigned threads = 0;
   read(options, "threads", threads);

@@ -26,53 +26,24 @@ def test_many_exact_maps_are_the_single_ones(sphere):
     assert near.distance[near.ok].max() <= 0.5 and not near.ok.all()
 
 
-def test_a_tolerance_bounds_the_error_of_distances(sphere):
+def test_every_function_of_maps_takes_exact_geodesics(sphere):
     geodesics = ahm.ExactGeodesics(sphere)
-    exact, near = geodesics.log_map(5), geodesics.log_map(5, tolerance=1e-2)
-    assert not np.array_equal(near.distance, exact.distance)
-    np.testing.assert_allclose(near.distance, exact.distance, rtol=1e-2)
-    for again in (geodesics.log_maps([5], tolerance=1e-2)[0], ahm.log_map(sphere, 5, method="exact", tolerance=1e-2),
-                  pickle.loads(pickle.dumps(near))):
-        np.testing.assert_array_equal(again.distance, near.distance)
-    for bad in (0.2, -1e-3, float("nan")):
-        with pytest.raises(ValueError, match="tolerance"):
-            geodesics.log_map(5, tolerance=bad)
-    with pytest.raises(TypeError, match="method 'exact'"):
-        ahm.log_map(sphere, 5, tolerance=1e-2)
-
-
-def test_every_function_of_exact_maps_takes_a_tolerance(sphere):
-    exact, near = ahm.ExactGeodesics(sphere), ahm.ExactGeodesics(sphere, tolerance=1e-2)
-    assert pickle.loads(pickle.dumps(near)).tolerance == 1e-2
     functions = {
         "log_map": lambda s, **o: ahm.log_map(s, 5, **o).distance,
         "stroke": lambda s, **o: ahm.stroke(s, [0, 40, 77], **o).map.distance,
         "cells": lambda s, **o: ahm.cells(s, [0, 40], **o).distance,
-        "distance": lambda s, **o: ahm.distance(s, [0], **{"method": "exact", **o}),
-        "targets": lambda s, **o: ahm.distance(s, [0], targets=[9, 77, 140], **{"method": "exact", **o}),
+        "farthest_points": lambda s, **o: ahm.farthest_points(s, 9, **o),
         "karcher_mean": lambda s, **o: ahm.karcher_mean(s, [0, 40, 77], **o).spread,
         "geometric_median": lambda s, **o: ahm.geometric_median(s, [0, 40, 77], **o).spread,
         "atlas": lambda s, **o: ahm.atlas(s, [0, 40], size=64, **o).distortion["mean"],
     }
     for name, call in functions.items():
-        sharp, found = call(exact), call(near)
-        np.testing.assert_allclose(found, sharp, rtol=0.03, err_msg=name)
-        assert not np.array_equal(found, sharp), name
-        for again in (call(exact, tolerance=1e-2), call(sphere, method="exact", tolerance=1e-2)):
-            np.testing.assert_array_equal(again, found, err_msg=name)
-        np.testing.assert_array_equal(call(near, tolerance=0), sharp, err_msg=name)
-        for bad in (0.2, -1e-3, float("nan")):
-            with pytest.raises(ValueError, match="tolerance"):
-                call(exact, tolerance=bad)
-        with pytest.raises(TypeError, match="method 'exact'"):
-            call(sphere, tolerance=1e-2, method="unfold" if name in ("cells", "distance", "targets") else "heat")
-    chosen = ahm.farthest_points(near, 9)
-    np.testing.assert_array_equal(ahm.farthest_points(sphere, 9, method="exact", tolerance=1e-2), chosen)
+        np.testing.assert_array_equal(call(geodesics, method="exact"), call(geodesics), err_msg=name)
+        np.testing.assert_array_equal(call(sphere, method="exact"), call(geodesics), err_msg=name)
+    chosen = ahm.farthest_points(geodesics, 9)
     for k in range(1, 9):
         before = ahm.distance(sphere, chosen[:k], method="exact")
-        assert before[chosen[k]] >= 0.97 * before.max()
-    with pytest.raises(TypeError, match="method 'exact'"):
-        ahm.farthest_points(sphere, 3, tolerance=1e-2)
+        assert before[chosen[k]] == before.max()
 
 
 def test_tool_paths_lie_on_the_faces(sphere):

@@ -189,7 +189,6 @@ TEST_F(CommandLine, HelpNamesOptions) {
                   "--k",        "--knn",      "--radius",  "--json",    "--view",   "--verbose", "--normals",
                   "--drop-nan", "--ordering", "--threads", "--u-axis",  "Examples", "face:"}},
       {"info", {"--json"}},
-      {"decal", {"--tolerance"}},
       {"cells", {"--sources", "--count", "--start", "--view", "label", "Examples"}},
       {"center", {"--points", "--weights", "--median", "--start", "--json", "Examples"}},
       {"stroke", {"--curve", "--closed", "--circle", "--view", "CURVE", "face:", "Examples"}}};

@@ -89,39 +89,6 @@ TEST_F(Methods, ArePolarByDefault) {
   }
 }
 
-TEST_F(Methods, HaveAToleranceIfExact) {
-  const auto exact = table("logmap sphere.obj -s 0 --method exact");
-  const auto json = summary("logmap sphere.obj -s 0 --method exact --tolerance 0.01 -o map.csv");
-  expect_values(json, {{"/tolerance", 0.01}});
-  const auto rows = read_csv("map.csv");
-  ASSERT_EQ(rows.size(), exact.size());
-  double worst = 0;
-  for (std::size_t k = 1; k < rows.size(); ++k)
-    worst = std::max(worst, std::abs(rows[k]["distance"] / exact[k]["distance"] - 1));
-  EXPECT_GT(worst, 0);
-  EXPECT_LE(worst, 0.01);
-}
-
-TEST_F(Methods, HaveAToleranceInEverySubcommand) {
-  write("small.obj", obj(icosphere(8)));
-  for (const std::string command :
-       {"logmap small.obj -s 0 -o out.csv", "stroke small.obj --curve '0 100 200' -o out.csv",
-        "cells small.obj --count 4 -o out.csv", "coverage small.obj --source 0 --radius 1 --spacing .3 -o out.csv",
-        "inverse small.obj --source 0 --at '.3,.4 .5,.1' -o out.csv", "atlas small.obj --charts 3 -o out.obj",
-        "center small.obj --points '0 100 200' --quiet"}) {
-    const auto result = [&](const std::string& options) {
-      const std::string out = run_ok(command + options).out;
-      return command.starts_with("center") ? out : read_text(command.ends_with(".obj") ? "out.obj" : "out.csv");
-    };
-    const std::string tolerant = result(" --method exact --tolerance 0.01");
-    EXPECT_FALSE(tolerant.empty());
-    EXPECT_EQ(result(" --method exact --tolerance 0.01"), tolerant) << command;
-    EXPECT_NE(result(" --method exact"), tolerant) << command;
-    expect_refused(command, {{"--tolerance 0.01", 2, {"--tolerance"}},
-                             {"--method exact --tolerance 0.5", 2, {"--tolerance: '0.5' is greater than 0.1"}}});
-  }
-}
-
 TEST_F(Methods, ThatAreExactNeedFlatFaces) {
   for (const std::string input : {"plane.xyz", "square.obj --backend pointcloud", "cube.off --discretization polygons"})
     expect_refused("logmap " + input, {{"-s 0 --method exact -o map.csv", 1, {"--method heat"}}});

@@ -123,6 +123,18 @@ TEST(Cells, OfALineOfAnyLengthMeetInTheMiddleAndEndWithTheComponent) {
   EXPECT_GE(farthest_points(two, Vertex{0}, 2)[1], Vertex{n});  // the other component first
 }
 
+TEST(Cells, EndAtTheRadiusOverFlatFaces) {
+  const auto surface = mesh_surface(split_icosphere(640));
+  const ExactGeodesics geodesics(surface);
+  const std::array sources{Vertex(3), Vertex(200), Vertex(411)};
+  const VoronoiCells whole = voronoi_cells(geodesics, sources),
+                     cells = voronoi_cells(geodesics, sources, {.radius = 0.4, .progress = {}});
+  for (std::size_t i = 0; i < cells.labels.size(); ++i) {
+    EXPECT_EQ(cells.labels[i], whole.distances[i] <= 0.4 ? whole.labels[i] : -1);
+    EXPECT_EQ(std::isnan(cells.distances[i]), whole.distances[i] > 0.4);
+  }
+}
+
 TEST(FarthestPoints, AreExactlyTheFarthestOverFlatFaces) {
   const Mesh ring = torus(300);
   const auto surface =

@@ -16,10 +16,10 @@ auto sphere(Index n) {
 }
 
 /// Bytes of the layout and a map, without the surface.
-long exact_bytes(const Surface& surface, double tolerance) {
+long exact_bytes(const Surface& surface) {
   const PeakBytes peak;
   const ExactGeodesics geodesics(surface);
-  geodesics.log_map(Vertex(0), {.tolerance = tolerance, .progress = {}});
+  geodesics.log_map(Vertex(0));
   return peak();
 }
 
@@ -57,11 +57,9 @@ TEST(Factors, NeedMemoryInProportionToTheirSizeOnHubs) {
 TEST(ExactMaps, NeedLessThanAFifthOfTheMemoryOfHeat) {
   const auto surface = sphere(40000);
   const long heat = heat_bytes(surface);
-  for (double tolerance : {0.0, 1e-3}) {
-    const long bytes = exact_bytes(surface, tolerance);
-    EXPECT_LT(5 * bytes, heat) << tolerance;
-    EXPECT_LT(bytes, 550L * surface.graph().size()) << tolerance;
-  }
+  const long bytes = exact_bytes(surface);
+  EXPECT_LT(5 * bytes, heat);
+  EXPECT_LT(bytes, 550L * surface.graph().size());
 }
 
 /// Chunks of windows are reused, so the number of allocations depends on the windows that wait at a time.
@@ -70,21 +68,17 @@ TEST(ExactMaps, AllocateNothingPerWindow) {
     Offset windows;
     long allocations;
   };
-  const auto count = [](Index n, double tolerance) {
+  const auto count = [](Index n) {
     const auto built = sphere(n);
     const ExactGeodesics geodesics(built);
     const auto& triangles = geodesics.triangles().surface;
-    exact::ExactOptions options;
-    options.tolerance = tolerance;
     const long before = allocations();
-    const exact::ExactMap map = exact::exact_map(triangles, triangles.vertex_point(Vertex(0)), options);
+    const exact::ExactMap map = exact::exact_map(triangles, triangles.vertex_point(Vertex(0)));
     return Count{map.statistics().windows, allocations() - before};
   };
-  for (double tolerance : {0.0, 1e-3}) {
-    const Count small = count(2500, tolerance), large = count(10000, tolerance);
-    EXPECT_LT(100 * large.allocations, large.windows) << tolerance;
-    EXPECT_LT(100 * (large.allocations - small.allocations), large.windows - small.windows) << tolerance;
-  }
+  const Count small = count(2500), large = count(10000);
+  EXPECT_LT(100 * large.allocations, large.windows);
+  EXPECT_LT(100 * (large.allocations - small.allocations), large.windows - small.windows);
 }
 
 }  // namespace

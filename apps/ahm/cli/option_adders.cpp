@@ -216,8 +216,6 @@ void add_repair_options(CLI::App& app, InputOptions& o) {
 CLI::Option* add_method(CLI::App& app, SolveOptions& o, std::vector<Method> methods, bool chosen) {
   if (chosen) o.method.reset();
   app.parse_complete_callback([&app, &o] {
-    if (o.tolerance > 0 && o.method != Method::exact)
-      throw CLI::ValidationError("--tolerance", "requires --method exact");
     if (o.method == Method::heat) return;
     for (const char* name : {"--variant", "--strategy", "--t-coef", "--ordering", "--accuracy", "--estimate"}) {
       const CLI::Option* option = app.get_option_no_throw(name);
@@ -246,18 +244,6 @@ CLI::Option* add_method(CLI::App& app, SolveOptions& o, std::vector<Method> meth
     help +=
         ".\nexact: straight lines over the faces of a mesh; best on coarse and sharp-edged meshes, and around holes";
   return add_parsed(app, "--method", o.method, choice_of<std::optional<Method>>(choices), "NAME", help);
-}
-
-CLI::Option* add_tolerance(CLI::App& app, SolveOptions& o) {
-  const auto parse = [](const std::string& text) {
-    const double value = parse_positive(text);
-    if (value > 0.1) throw std::invalid_argument(fmt::format("'{}' is greater than 0.1", text));
-    return value;
-  };
-  return add_parsed(
-      app, "--tolerance", o.tolerance, parse, "R",
-      "For --method exact: largest relative error of distances, at most 0.1 (default: exact to rounding).\n"
-      "Takes nearly linear time, much less on large smooth meshes");
 }
 
 CLI::Option* add_variant(CLI::App& app, SolveOptions& o) {

@@ -97,7 +97,6 @@ void add_mesh_options(CLI::App& app, InputOptions& o);
 /// @param chosen   the default is the method that suits the surface, and options of heat select heat; otherwise the default is heat
 CLI::Option* add_method(CLI::App& app, SolveOptions& o, std::vector<Method> methods = {Method::polar, Method::exact},
                         bool chosen = false);
-CLI::Option* add_tolerance(CLI::App& app, SolveOptions& o);
 CLI::Option* add_variant(CLI::App& app, SolveOptions& o);
 CLI::Option* add_strategy(CLI::App& app, SolveOptions& o);
 CLI::Option* add_t_coef(CLI::App& app, SolveOptions& o);

@@ -46,7 +46,6 @@ struct InputOptions {
 struct SolveOptions : HeatOptions {
   std::optional<Method> method = Method::heat;  ///< none: the method that suits the surface
   std::optional<double> radius;
-  double tolerance = 0;  ///< tolerance of exact maps
 };
 
 /// The direction of the u axis.

@@ -218,7 +218,6 @@ void offer(CLI::App& app, AtlasCommandOptions& o) {
   add_parsed(app, "--texture", o.texture, non_empty, "FILE", "Texture image, PNG or JPEG (default: a checkerboard)");
   add_output(app, o.output)->required();
   add_method(app, o.solve);
-  add_tolerance(app, o.solve);
   add_graph_options(app, o.input, o.solve);
   add_json(app, o.output);
   add_view(app, o.output)->description("Write a picture of the result: .png");

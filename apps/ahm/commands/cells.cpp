@@ -209,7 +209,6 @@ void offer(CLI::App& app, CellsOptions& o) {
       ->description(
           "heat (default): distances by a wavefront over the graph, without solving for heat;\n"
           "exact: by straight lines over the faces of a mesh");
-  add_tolerance(app, o.solve);
   add_backend(app, o.input);
   add_threads(app, o.input);
   add_cloud_options(app, o.input);

@@ -116,7 +116,6 @@ void offer(CLI::App& app, CenterCommandOptions& o) {
   add_parsed(app, "--start", o.start, parse_source, "SPEC",
              "Where the search starts (default: the point of largest weight)");
   add_method(app, o.solve, {Method::polar, Method::exact}, true);
-  add_tolerance(app, o.solve);
   add_graph_options(app, o.input, o.solve);
   add_json(app, o.output);
   add_verbosity(app, o.output.verbosity);

@@ -120,7 +120,6 @@ nlohmann::ordered_json as_json(const LogmapRun& run, const OutputOptions& output
   j["input"]["normals"] = !run.input.geometry.normals.empty();
   j["n"] = run.rows.status.size();
   j["method"] = to_string(run.map.method());
-  if (run.options.tolerance > 0) j["tolerance"] = run.options.tolerance;
   if (run.map.method() == Method::heat) {
     j["variant"] = to_string(run.map.variant());
     j["strategy"] = to_string(run.map.strategy());
@@ -448,7 +447,6 @@ void run(const LogmapCommand& command) {
 void offer_method(CLI::App& app, LogmapOptions& o) {
   const char* group = "Method";
   add_method(app, o.solve, {Method::polar, Method::exact}, true)->group(group);
-  add_tolerance(app, o.solve)->group(group);
   add_variant(app, o.solve)->group(group);
   add_backend(app, o.input)->group(group);
   add_t_coef(app, o.solve)->group(group);

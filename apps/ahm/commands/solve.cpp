@@ -93,11 +93,7 @@ MapOptions map_options(const SolveOptions& options) {
 
 ExactMapOptions exact_options(const SolveOptions& options, Journal& journal) {
   const MapOptions map = map_options(options);
-  return {.radius = map.radius,
-          .tolerance = options.tolerance,
-          .frames = map.frames,
-          .progress = journal.progress(),
-          .threads = options.threads};
+  return {.radius = map.radius, .frames = map.frames, .progress = journal.progress(), .threads = options.threads};
 }
 
 LogMap solve(const SolveOptions& options, const LogMapSolver& solver, const Source& source, Journal& journal) {

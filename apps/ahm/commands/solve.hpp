@@ -24,7 +24,7 @@ LogMapSolver make_solver(const SolveOptions& options, const TangentGraph& graph,
 /// Options of single maps: the radius. Maps keep their frames, which directions in space require.
 MapOptions map_options(const SolveOptions& options);
 
-/// Options of exact maps: the radius and the tolerance.
+/// Options of exact maps: the radius and the threads.
 ExactMapOptions exact_options(const SolveOptions& options, Journal& journal);
 
 /// Computes one map, and reports its strategy with --verbose.
@@ -38,7 +38,9 @@ struct Maps {
   LogMap map(const SolveOptions& options, const Input& input, const SourceSpec& spec, const SurfaceSource& source,
              Journal& journal) const;
   AnySolver maker() const {
-    return solver ? AnySolver(*solver) : polar ? AnySolver(*polar, exact.threads) : AnySolver(*geodesics, exact);
+    return solver  ? AnySolver(*solver)
+           : polar ? AnySolver(*polar, exact.threads)
+                   : AnySolver(*geodesics, exact.threads);
   }
 
   std::optional<LogMapSolver> solver;

@@ -188,7 +188,6 @@ void offer(CLI::App& app, StrokeCommandOptions& o) {
   add_parsed(app, "--radius", o.solve.radius, parse_positive, "R",
              "Map only points within this distance of the curve; smaller is faster");
   add_method(app, o.solve, {Method::exact});
-  add_tolerance(app, o.solve);
   add_graph_options(app, o.input, o.solve);
   add_map_results(app, o.output);
 }

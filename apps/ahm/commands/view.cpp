@@ -59,8 +59,7 @@ viewer::SessionOptions session_options(const ViewOptions& options, const Input& 
                       options.solve.variant,
                       options.solve.t_coef,
                       first_radius(options, input.graph()),
-                      {},
-                      options.solve.tolerance};
+                      {}};
   if (options.source) session.source = point_of(input, *options.source);
   session.threads = options.input.threads;
   session.formats = {{"map", {"csv", "ply", "vtp", "jsonl", "pcd"}},
@@ -129,7 +128,6 @@ void offer(CLI::App& app, ViewOptions& o) {
   app.add_flag("--no-browser", o.no_browser, "Only print the address, do not open a browser");
   add_parsed(app, "--port", o.port, integer_parser(0, 65535), "N", "Port on 127.0.0.1 (default 0: any free port)");
   add_method(app, o.solve, {Method::polar, Method::exact}, true);
-  add_tolerance(app, o.solve);
   add_parsed(app, "--radius", o.solve.radius, parse_positive, "R",
              "Map only points within this distance of the source");
   app.add_flag("--local", o.local,

@@ -177,7 +177,7 @@ std::string as_text(const MethodAdvice& advice) {
                                        degrees(advice.median_bend), degrees(advice.sharp_bend));
   if (advice.exact_first)
     return fmt::format("--method exact for a few maps, {} for many ({})", to_string(advice.method), bend);
-  return fmt::format("{}; to follow every face use --method exact, on large meshes with --radius or --tolerance ({})",
+  return fmt::format("{}; to follow every face use --method exact, on large meshes with --radius ({})",
                      to_string(advice.method), bend);
 }
 

@@ -34,7 +34,7 @@ constexpr Advice advices[] = {
     {"collinear_faces", "remove them, or use --method heat"},
     {"no_flat_triangles", "use --method heat"},
     {"windows_without_end", "repair the mesh, or use --method heat"},
-    {"windows_lost", "repair the thin triangles there, or use --tolerance 1e-9 or --method heat"},
+    {"windows_lost", "repair the thin triangles there, or use --method polar or heat (paths: --fast)"},
     {"polygons_not_refined", "use --discretization refined, or --method heat"},
     {"polygons_too_large", "use --discretization refined"},
     {"no_bending_direction", "write the axis as X,Y,Z"},

@@ -34,7 +34,6 @@ std::vector<std::string> words(const Settings& settings, bool chosen) {
   const auto add = [&](const char* name, std::string value) { out.insert(out.end(), {name, std::move(value)}); };
   const bool heat = settings.method == Method::heat;
   if (!heat || chosen) add("--method", std::string(to_string(settings.method)));
-  if (settings.method == Method::exact && settings.tolerance > 0) add("--tolerance", number(settings.tolerance));
   if (heat && settings.variant != usual.variant) add("--variant", std::string(to_string(settings.variant)));
   if (heat && settings.t_coef != usual.t_coef) add("--t-coef", number(settings.t_coef));
   if (settings.radius) add("--radius", number(*settings.radius));

@@ -313,9 +313,7 @@ struct Session::Impl {
     if (settings.method == Method::polar)
       return makers.polar().log_map(source, u_axis, {.radius = radius, .frames = frames, .progress = until(stop)});
     if (settings.method == Method::exact)
-      return makers.geodesics().log_map(
-          source, u_axis,
-          {.radius = radius, .tolerance = settings.tolerance, .frames = frames, .progress = until(stop)});
+      return makers.geodesics().log_map(source, u_axis, {.radius = radius, .frames = frames, .progress = until(stop)});
     MapOptions heat = heat_options(settings, radius, stop);
     heat.frames = frames;
     return makers.solver(settings, stop).solve(placed.source, heat);
@@ -369,9 +367,7 @@ struct Session::Impl {
   LogMap stroke(const SurfaceCurve& curve, const Settings& settings, const std::stop_token& stop) {
     const double radius = map_radius_of_curve(curve, radius_of(settings));
     if (settings.method == Method::exact)
-      return makers.geodesics()
-          .log_map(curve.samples, {.radius = radius, .tolerance = settings.tolerance, .progress = until(stop)})
-          .map;
+      return makers.geodesics().log_map(curve.samples, {.radius = radius, .progress = until(stop)}).map;
     return makers.solver(settings, stop).solve(curve.source, heat_options(settings, radius, stop));
   }
 

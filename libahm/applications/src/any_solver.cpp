@@ -15,7 +15,7 @@ LogMap AnySolver::map(Vertex source, double radius, bool frames) const {
   if (solver_ != nullptr)
     return solver_->solve(Source::at_vertex(source), {.radius = radius, .frames = frames, .spread = false});
   if (polar_ != nullptr) return polar_->log_map(source, {.radius = radius, .frames = frames});
-  return geodesics_->log_map(source, {.radius = radius, .tolerance = tolerance_, .frames = frames, .progress = {}});
+  return geodesics_->log_map(source, {.radius = radius, .frames = frames, .progress = {}});
 }
 
 std::vector<double> AnySolver::coordinates(std::span<const Vertex> sources,
@@ -77,8 +77,7 @@ double AnySolver::longest_corner_distance(const FaceList& faces) const {
 }
 
 VoronoiCells AnySolver::cells(std::span<const Vertex> sources) const {
-  return geodesics_ == nullptr ? voronoi_cells(graph(), sources)
-                               : voronoi_cells(*geodesics_, sources, {.tolerance = tolerance_, .progress = {}});
+  return geodesics_ == nullptr ? voronoi_cells(graph(), sources) : voronoi_cells(*geodesics_, sources);
 }
 
 }  // namespace ahm

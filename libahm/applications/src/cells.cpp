@@ -88,8 +88,7 @@ VoronoiCells voronoi_cells(const ExactGeodesics& geodesics, std::span<const Vert
     for (Vertex vertex : vertices) sources.push_back(triangles.vertex_point(vertex));
     const double unit = geodesics.triangles().length_unit;
     const exact::ExactMap map = exact::exact_map(
-        triangles, sources,
-        {.radius = options.radius / unit, .tolerance = options.tolerance, .targets = {}, .progress = options.progress});
+        triangles, sources, {.radius = options.radius / unit, .targets = {}, .progress = options.progress});
     VoronoiCells cells;
     for (Index i = 0; i < map.size(); ++i) {
       cells.labels.push_back(map.source(Vertex(i)));
@@ -132,7 +131,7 @@ std::vector<Vertex> farthest_points(const ExactGeodesics& geodesics, Vertex firs
     std::vector<Vertex> points{first};
     std::vector<double> distance(static_cast<std::size_t>(triangles.vertex_count()),
                                  std::numeric_limits<double>::infinity());
-    exact::ExactOptions nearer{.tolerance = options.tolerance, .targets = {}, .progress = {}};
+    exact::ExactOptions nearer;
     nearer.progress.stop = options.progress.stop;
     while (points.size() < static_cast<std::size_t>(count)) {
       options.progress.step("farthest points", static_cast<double>(points.size()) / count);

@@ -60,7 +60,6 @@ struct SurfaceSolver::Impl {
     } else if (const auto* o = std::get_if<ExactSolverOptions>(&wanted)) {
       method = Method::exact;
       threads = o->threads;
-      tolerance = o->tolerance;
       geodesics();
     } else {
       const auto& polar_options = std::get<PolarSolverOptions>(wanted);
@@ -78,8 +77,7 @@ struct SurfaceSolver::Impl {
   LogMap one_map(const SurfacePoint& point, const SurfaceSource& source, const SurfaceMapOptions& o) const {
     if (heat) return heat->solve(source.source, heat_options(o));
     if (polar) return polar->log_map(point, o.u_axis, {.radius = o.radius, .frames = o.frames, .progress = o.progress});
-    return geodesics().log_map(
-        point, o.u_axis, {.radius = o.radius, .tolerance = tolerance, .frames = o.frames, .progress = o.progress});
+    return geodesics().log_map(point, o.u_axis, {.radius = o.radius, .frames = o.frames, .progress = o.progress});
   }
 
   static MapOptions heat_options(const SurfaceMapOptions& o) {
@@ -96,7 +94,6 @@ struct SurfaceSolver::Impl {
   std::shared_ptr<const Surface> surface;
   Method method = Method::polar;
   unsigned threads = 0;
-  double tolerance = 0;
   std::optional<LogMapSolver> heat;
   std::optional<PolarMapSolver> polar;
   mutable std::once_flag once;
@@ -171,10 +168,7 @@ std::vector<double> SurfaceSolver::distance(const std::vector<Location>& sources
   if (impl_->method == Method::exact) {
     std::vector<ExactSource> from;
     for (const Location& source : sources) from.push_back({.point = source.on(surface())});
-    const LogMap map =
-        impl_->geodesics()
-            .log_map(from, {.radius = options.radius, .tolerance = impl_->tolerance, .progress = options.progress})
-            .map;
+    const LogMap map = impl_->geodesics().log_map(from, {.radius = options.radius, .progress = options.progress}).map;
     return by_row(surface().rows(), [&](Vertex v) { return map.distance(v); });
   }
   const TangentGraph& graph = surface().graph();

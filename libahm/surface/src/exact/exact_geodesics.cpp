@@ -284,7 +284,6 @@ std::vector<Wavefront::Seed> ExactGeodesics::seeds(const PlacedSources& from, co
 exact::ExactMap ExactGeodesics::exact_map(const PlacedSources& from, const ExactMapOptions& options) const {
   exact::ExactOptions exact_options;
   exact_options.radius = options.radius / flat_.length_unit;
-  exact_options.tolerance = options.tolerance;
   exact_options.max_windows = options.max_windows;
   exact_options.progress = options.progress;
   return exact::exact_map(flat_.surface, from.points, exact_options);

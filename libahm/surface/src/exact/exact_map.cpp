@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <memory>
 #include <numbers>
 #include <string>
 
@@ -11,7 +10,6 @@
 #include "ahm/util/memory.hpp"
 #include "ahm/util/parallel.hpp"
 #include "ahm/util/text.hpp"
-#include "exact/merged_propagation.hpp"
 #include "exact/propagation.hpp"
 
 namespace ahm::exact {
@@ -24,8 +22,6 @@ void check(const PolyhedralSurface& surface, std::span<const MeshPoint> sources,
   if (sources.empty()) throw InvalidArgument("'sources' is empty; an exact map needs a source");
   if (!(options.radius > 0))
     throw InvalidArgument("'radius' is " + detail::number(options.radius) + "; it must be > 0");
-  if (!(options.tolerance >= 0 && options.tolerance <= 0.1))
-    throw InvalidArgument("'tolerance' is " + detail::number(options.tolerance) + "; it must be in [0, 0.1]");
   if (options.only_targets && options.targets.empty()) throw InvalidArgument("'only_targets' needs 'targets'");
   for (const MeshPoint& p : sources) checked(surface, p, "source");
 }
@@ -33,27 +29,24 @@ void check(const PolyhedralSurface& surface, std::span<const MeshPoint> sources,
 /// Propagates windows from all sources. The memory of the windows is freed on return.
 PropagationResult propagate(const PolyhedralSurface& surface, std::span<const MeshPoint> sources,
                             std::span<const MeshPoint> targets, const ExactOptions& options) {
-  std::unique_ptr<Propagation> windows;
-  if (options.tolerance > 0)
-    windows = std::make_unique<MergedPropagation>(surface, options, targets);
-  else
-    windows = std::make_unique<ExactPropagation>(surface, options, targets);
-  for (const MeshPoint& p : sources) windows->add_source(p);
-  windows->run(options.progress);
-  return std::move(*windows).found();
+  Propagation windows(surface, options, targets);
+  for (const MeshPoint& p : sources) windows.add_source(p);
+  windows.run(options.progress);
+  return std::move(windows).found();
 }
 
 /// Checks that no vertex is farther than a neighbor plus the side between them. Otherwise windows were lost, which happens in
 /// needles with angles near the rounding error.
-void check_reached(const PolyhedralSurface& surface, const PropagationResult& found, double tolerance) {
+void check_reached(const PolyhedralSurface& surface, const PropagationResult& found) {
   const std::span<const double> distance = found.distance;
   const auto check = [&](Index from, Index to, double length) {
-    const double way = (distance[from] + length) * (1 + 1e-9 + 3 * tolerance);
+    const double way = (distance[from] + length) * (1 + 1e-9);
     if (!(way < found.horizon) || distance[to] <= way) return;
-    throw InvalidGeometry("windows_lost",
-                          "windows were lost before they reached vertex " + std::to_string(to) +
-                              ", a neighbor of vertex " + std::to_string(from),
-                          "repair the needle triangles there, set a tolerance, or use the heat method");
+    throw InvalidGeometry(
+        "windows_lost",
+        "windows were lost before they reached vertex " + std::to_string(to) + ", a neighbor of vertex " +
+            std::to_string(from),
+        "repair the needle triangles there, or use the polar or the heat method (paths: locally_shortest_path)");
   };
   for (Index v = 0; v < surface.vertex_count(); ++v) {
     if (!(distance[v] < found.horizon)) continue;  // most vertices, where the radius is small
@@ -87,8 +80,7 @@ class MapBuilder {
     for (const MeshPoint& p : map_.sources_) has_source_[component_of(surface, p)] = 1;
   }
 
-  ExactMap build(PropagationResult found, double tolerance) {
-    map_.tolerance_ = tolerance;
+  ExactMap build(PropagationResult found) {
     map_.origins_ = std::move(found.origins);
     map_.statistics_ = found.statistics;
     const std::size_t rows = map_.vertices_ + map_.targets_.size();
@@ -142,8 +134,8 @@ ExactMap exact_map(const PolyhedralSurface& surface, std::span<const MeshPoint> 
     for (const MeshPoint& p : sources) from.push_back(checked(surface, p, "source"));
     for (const MeshPoint& p : options.targets) to.push_back(checked(surface, p, "target"));
     PropagationResult found = propagate(surface, from, to, options);
-    check_reached(surface, found, options.tolerance);
-    return MapBuilder(surface, std::move(from), std::move(to)).build(std::move(found), options.tolerance);
+    check_reached(surface, found);
+    return MapBuilder(surface, std::move(from), std::move(to)).build(std::move(found));
   });
 }
 

@@ -293,12 +293,6 @@ class PathCollector {
   GeodesicPath path_;
 };
 
-void check_exact(const ExactMap& map) {
-  if (map.tolerance() > 0)
-    throw InvalidArgument("'map' has the tolerance " + detail::number(map.tolerance()) +
-                          "; paths require an exact map");
-}
-
 /// Directions beyond the boundary by less than this run along it.
 constexpr double boundary_margin = 1e-9;
 /// Maximum number of sides that a line may cross.
@@ -393,7 +387,6 @@ GeodesicPath path_to_vertex(const PolyhedralSurface& surface, const ExactMap& ma
   if (vertex.index < 0 || vertex.index >= map.size() || map.size() != surface.vertex_count())
     throw InvalidArgument("vertex " + std::to_string(vertex.index) + " is outside [0, " + std::to_string(map.size()) +
                           "), or the map belongs to another surface");
-  check_exact(map);
   if (map.status(vertex) != Status::ok) return without_points(map.status(vertex));
   return PathCollector(surface, map).to_vertex(vertex.index);
 }
@@ -402,7 +395,6 @@ GeodesicPath path_to_target(const PolyhedralSurface& surface, const ExactMap& ma
   if (target >= map.targets() || map.size() != surface.vertex_count())
     throw InvalidArgument("target " + std::to_string(target) + " is outside [0, " + std::to_string(map.targets()) +
                           "), or the map belongs to another surface");
-  check_exact(map);
   if (map.target_status(target) != Status::ok) return without_points(map.target_status(target));
   if (const Index vertex = vertex_of(surface, map.target(target)); vertex >= 0)
     return PathCollector(surface, map).to_vertex(vertex);

@@ -13,6 +13,23 @@ using std::numbers::pi;
 /// Maximum number of windows: far more than any known mesh requires, and at least the bound of [MMP87]. More windows run in
 /// circles, where lengths are below the rounding error of distances.
 double max_windows(double faces) { return 1e6 + faces * faces; }
+/// Margin around a window in which points are still covered, and minimum width of a window; relative to the side.
+constexpr double window_margin = 1e-12, min_width = 1e-14;
+/// A window is dropped where its distance exceeds a known distance by more than this factor.
+constexpr double slack = 1 + 1e-12;
+/// Width of a bucket in mean side lengths.
+constexpr double bucket_width = 0.25;
+/// Rays to a vertex that cross a side closer than this multiple of it may be one ray, past a vertex that both touch.
+constexpr double same_ray = 1e-10;
+/// Angle by which rays past a vertex may miss it where the surface is flat up to rounding. The errors of many such vertices on
+/// one line add up, far away, to more than `window_margin` of a side.
+constexpr double missed_angle = 1e-12;
+/// Margin at both ends of the range of angles behind a vertex.
+constexpr double wedge_margin = 1e-12;
+
+/// Whether an origin lies on the line of a side, in the side's frame. Rays that meet the side at a smaller angle, or from its
+/// other side by rounding, run along it. They are handled at the ends of the side.
+bool on_line(const Place& from, double length) { return !(-from[1] > 1e-15 * (std::abs(from[0]) + length)); }
 
 }  // namespace
 
@@ -24,7 +41,10 @@ Propagation::Propagation(const PolyhedralSurface& surface, const ExactOptions& o
       max_windows_(options.max_windows),
       distance_(static_cast<std::size_t>(surface.vertex_count()), infinity),
       target_distance_(targets.size(), infinity),
-      reached_(distance_.size() + targets.size()) {
+      reached_(distance_.size() + targets.size()),
+      apex_arrivals_(3 * static_cast<std::size_t>(surface.face_count()), ApexArrival{infinity, 0}),
+      windows_(bucket_width * surface.mean_length()),
+      bends_(bucket_width * surface.mean_length()) {
   place_targets(targets);
 }
 
@@ -120,7 +140,9 @@ void Propagation::light_right(const Ray& ray, double begin, double end) {
   if (r.beyond_right < 0 || !(end - begin > min_width * r.right)) return;
   Window w = beyond_right(ray, begin, end);
   if (on_line(w.from, r.right)) return;
-  start(w);
+  const double sigma = origins_[w.origin()].distance;
+  const double at_begin = sigma + distance(w.from, {w.begin, 0}), at_end = sigma + distance(w.from, {w.end, 0});
+  if (!loses(w, at_begin, at_end)) push(w, sigma, at_begin, at_end);
 }
 
 /// The window through an interval of the right side, measured from its apex, in the frame of the face beyond.
@@ -162,12 +184,47 @@ ArrivalRecord Propagation::reach(const Ray& ray, const Place& at) const {
   return {ray.half, origin, ray.from, ray.turn + (ray.origin2 & 1 ? -angle : angle)};
 }
 
+/// Sets the distance of a vertex if it is shorter.
+void Propagation::offer(Index vertex, double distance, const Ray& ray, const Place& at) {
+  if (!(distance < distance_[vertex])) return;
+  if (distance_[vertex] == infinity) ++reached_count_;
+  distance_[vertex] = distance;
+  reached_[vertex] = reach(ray, at);
+  if (distance <= horizon_ && surface_.bends_paths(vertex)) bends_.push(distance, {vertex, distance});
+}
+
+template <class Covers>
+void Propagation::offer_targets(const Ray& ray, const Covers& covers) {
+  const double sigma = origins_[ray.origin2 / 2].distance;
+  const Index face = ray.half / 3;
+  const HalfRecord& side0 = surface_.record(3 * face);
+  const HalfRecord& r = surface_.record(ray.half);
+  const int s = ray.half % 3;
+  for (Offset k = targets_of_face_[face]; k < targets_of_face_[face + 1]; ++k) {
+    const Index target = target_order_[k];
+    const Place& placed = targets_[target];
+    const Place at = s == 0 ? placed : s == 1 ? exact::in_next(side0, placed) : in_previous(side0, placed);
+    const double d = sigma + distance(ray.from, at);
+    if (!(d < target_distance_[target]) || !covers(at)) continue;
+    target_distance_[target] = d;
+    ArrivalRecord& there = reached_[distance_.size() + target];
+    there = reach(ray, at);
+    there.from = s == 0 ? ray.from : s == 1 ? in_previous(r, ray.from) : exact::in_next(r, ray.from);
+    there.half = 3 * face;
+  }
+}
+
 /// Offers straight paths to all targets in the face where a ray starts.
 void Propagation::offer_targets_in_face(const Ray& ray) {
-  if (!has_targets()) return;
-  offer_targets(
-      ray.half, ray.from, origins_[ray.origin2 / 2].distance, [](const Place&) { return true; },
-      [&](const Place& at) { return reach(ray, at); }, [&](const Place&) { return origin_error(ray.origin2 / 2); });
+  if (has_targets()) offer_targets(ray, [](const Place&) { return true; });
+}
+
+void Propagation::offer_targets_of(const Window& w) {
+  const double margin = window_margin * surface_.record(w.half).length;
+  offer_targets({w.half, w.from, w.turn, w.origin2}, [&](const Place& at) {
+    const double crossing = crossing_to(w.from, at);
+    return crossing > w.begin - margin && crossing < w.end + margin;
+  });
 }
 
 void Propagation::copy_vertex_targets() {
@@ -178,64 +235,17 @@ void Propagation::copy_vertex_targets() {
   }
 }
 
-void Propagation::check_count() const {
-  if (static_cast<double>(window_count_) > max_windows(surface_.face_count()))
-    throw InvalidGeometry("windows_without_end", "windows without end: lengths of sides differ too much",
-                          "repair the mesh, or use the heat method");
-}
-
-PropagationResult Propagation::found() && {
-  const ExactStatistics statistics{window_count_, bytes()};
-  return {std::move(distance_),
-          std::move(target_distance_),
-          std::move(reached_),
-          std::move(origins_),
-          horizon_,
-          statistics};
-}
-
-std::size_t Propagation::bytes() const {
-  return distance_.capacity() * sizeof(double) + reached_.capacity() * sizeof(ArrivalRecord) +
-         origins_.capacity() * sizeof(Origin) + targets_.capacity() * sizeof(Vec2);
-}
-
-namespace {
-
-using std::numbers::pi;
-
-/// Rays to a vertex that cross a side closer than this multiple of it may be one ray, past a vertex that both touch.
-constexpr double same_ray = 1e-10;
-/// Angle by which rays past a vertex may miss it where the surface is flat up to rounding. The errors of many such vertices on
-/// one line add up, far away, to more than `window_margin` of a side.
-constexpr double missed_angle = 1e-12;
-/// Margin at both ends of the range of angles behind a vertex.
-constexpr double wedge_margin = 1e-12;
-
-}  // namespace
-
-ExactPropagation::ExactPropagation(const PolyhedralSurface& surface, const ExactOptions& options,
-                                   std::span<const MeshPoint> targets)
-    : Propagation(surface, options, targets),
-      apex_arrivals_(3 * static_cast<std::size_t>(surface.face_count()), ApexArrival{infinity, 0}),
-      windows_(bucket_width * surface.mean_length()),
-      bends_(bucket_width * surface.mean_length()) {}
-
-void ExactPropagation::start(const Window& w) {
-  const double sigma = origins_[w.origin()].distance;
-  const double at_begin = sigma + distance(w.from, {w.begin, 0}), at_end = sigma + distance(w.from, {w.end, 0});
-  if (!loses(w, at_begin, at_end)) push(w, sigma, at_begin, at_end);
-}
-
-void ExactPropagation::nearer(std::size_t row, double distance, double /*error*/) {
-  if (row >= distance_.size()) return;
-  const auto vertex = static_cast<Index>(row);
-  if (distance <= horizon_ && surface_.bends_paths(vertex)) bends_.push(distance, {vertex, distance});
+double Propagation::farthest_target() {
+  copy_vertex_targets();
+  double farthest = 0;
+  for (double d : target_distance_) farthest = std::max(farthest, d);
+  return farthest;
 }
 
 // ---------------------------------------------------------------------------------------------- bends
 
 /// Continues shortest paths behind a vertex, where both sides have an angle of at least pi.
-void ExactPropagation::bend(const Bend& event) {
+void Propagation::bend(const Bend& event) {
   const Index v = event.vertex;
   if (event.distance > distance_[v]) return;
   const ArrivalRecord& in = reached_[v];
@@ -255,7 +265,7 @@ void ExactPropagation::bend(const Bend& event) {
 
 /// Turns left from a corner and lights the angles between pi and `high`. `turned` is the angle from the incoming path to the
 /// right side of the corner.
-void ExactPropagation::fill(Corner c, double turned, double high, std::uint32_t origin2) {
+void Propagation::fill(Corner c, double turned, double high, std::uint32_t origin2) {
   constexpr double low = pi - wedge_margin;
   for (; c.half >= 0 && turned < high; c = surface_.turn_left(c)) {
     const double angle = surface_.angle(c.half);
@@ -271,7 +281,7 @@ void ExactPropagation::fill(Corner c, double turned, double high, std::uint32_t 
 // ---------------------------------------------------------------------------------------------- windows
 
 /// Queues a window.
-void ExactPropagation::push(const Window& w, double sigma, double at_begin, double at_end) {
+void Propagation::push(const Window& w, double sigma, double at_begin, double at_end) {
   const bool across = w.from[0] >= w.begin && w.from[0] <= w.end;
   const double key = across ? sigma - w.from[1] : std::min(at_begin, at_end);
   if (key > horizon_) return;
@@ -280,17 +290,17 @@ void ExactPropagation::push(const Window& w, double sigma, double at_begin, doub
 }
 
 /// Whether no shortest path crosses a window, because one of the ends of its half-edge is nearer [XW09].
-bool ExactPropagation::loses(const Window& w, double at_begin, double at_end) const {
+bool Propagation::loses(const Window& w, double at_begin, double at_end) const {
   const HalfRecord& r = surface_.record(w.half);
   return at_end > (distance_[r.tail] + w.end) * slack || at_begin > (distance_[r.head] + r.length - w.begin) * slack;
 }
 
-void ExactPropagation::cross_face(const Window& w) {
+void Propagation::cross_face(const Window& w) {
   const HalfRecord& r = surface_.record(w.half);
   const double sigma = origins_[w.origin()].distance;
   const double at_begin = sigma + distance(w.from, {w.begin, 0}), at_end = sigma + distance(w.from, {w.end, 0});
   if (loses(w, at_begin, at_end)) return;  // again, as distances may have become shorter since it was queued
-  if (has_targets()) offer_targets_of(w, sigma);
+  if (has_targets()) offer_targets_of(w);
 
   const double crossing = crossing_to(w.from, apex(r));
   const double across = crossing - w.from[0], down = -w.from[1];
@@ -316,7 +326,7 @@ void ExactPropagation::cross_face(const Window& w) {
 
 /// Whether all rays of a window to the right (left) of the apex cross the line from the best window's origin to the apex. With
 /// several sources, some rays may pass that origin, if it is a source inside the window.
-bool ExactPropagation::hides(const Window& w, bool right) const {
+bool Propagation::hides(const Window& w, bool right) const {
   if (apex_arrival_origins_.empty()) return true;
   const ApexArrival& best = apex_arrivals_[w.half];
   const double last = right ? w.end : w.begin;
@@ -326,7 +336,7 @@ bool ExactPropagation::hides(const Window& w, bool right) const {
 
 /// Queues the part of a window that continues through the side tail-apex.
 /// @param to_apex  distance of the apex where the window ends there, otherwise 0
-void ExactPropagation::continue_left(const Window& w, const HalfRecord& r, double sigma, double to_apex) {
+void Propagation::continue_left(const Window& w, const HalfRecord& r, double sigma, double to_apex) {
   const double begin = std::max(0.0, hit_left(r, w.from, w.begin));
   const double end = to_apex > 0 ? r.left : std::min(r.left, hit_left(r, w.from, w.end));
   if (!(end - begin > min_width * r.left)) return;
@@ -343,7 +353,7 @@ void ExactPropagation::continue_left(const Window& w, const HalfRecord& r, doubl
 }
 
 /// Queues the part of a window that continues through the side apex-head.
-void ExactPropagation::continue_right(const Window& w, const HalfRecord& r, double sigma, double to_apex) {
+void Propagation::continue_right(const Window& w, const HalfRecord& r, double sigma, double to_apex) {
   const double begin = to_apex > 0 ? 0 : std::max(0.0, hit_right(r, w.from, w.begin));
   const double end = std::min(r.right, hit_right(r, w.from, w.end));
   if (!(end - begin > min_width * r.right)) return;
@@ -359,40 +369,58 @@ void ExactPropagation::continue_right(const Window& w, const HalfRecord& r, doub
   push(child, sigma, at_begin, at_end);
 }
 
-void ExactPropagation::offer_targets_of(const Window& w, double sigma) {
-  const double margin = window_margin * surface_.record(w.half).length;
-  offer_targets(
-      w.half, w.from, sigma,
-      [&](const Place& at) {
-        const double crossing = crossing_to(w.from, at);
-        return crossing > w.begin - margin && crossing < w.end + margin;
-      },
-      [&](const Place& at) {
-        return reach({w.half, w.from, w.turn, w.origin2}, at);
-      },
-      [](const Place&) { return 0.0; });
-}
+// ---------------------------------------------------------------------------------------------- run
 
-void ExactPropagation::run(const Progress& progress) {
+/// Processes both queues in the order of their buckets, bends first. Ends at the horizon, or when nothing in the queues can
+/// reach a target earlier.
+void Propagation::run(const Progress& progress) {
   const auto inside = [](const Origin& source) { return source.vertex < 0; };
   if (sources_ > 1 && std::any_of(origins_.begin(), origins_.end(), inside))
     apex_arrival_origins_.resize(apex_arrivals_.size());
-  drain(
-      bends_, [this](const Bend& b) { bend(b); }, windows_, [this](const Window& w) { cross_face(w); }, progress);
+  Offset chunks = 0;
+  while (!windows_.empty() || !bends_.empty()) {
+    progress.step("windows", fraction());
+    if (windows_.key() > horizon_) break;
+    if (only_targets_) horizon_ = std::min(horizon_, farthest_target());
+    if (windows_.key() > horizon_) break;
+    if (max_windows_ > 0 && window_count_ >= max_windows_) {
+      horizon_ = windows_.key();
+      break;
+    }
+    while (!windows_.bucket_empty() || !bends_.bucket_empty()) {
+      while (!bends_.bucket_empty()) bends_.drain_chunk([this](const Bend& b) { bend(b); });
+      if (windows_.bucket_empty()) continue;
+      windows_.drain_chunk([this](const Window& w) { cross_face(w); });
+      check_count();
+      if (++chunks % 65536 == 0) progress.step("windows", fraction());
+    }
+    windows_.advance();
+    bends_.advance();
+  }
   progress.step("windows", 1);
   copy_vertex_targets();
 }
 
-double ExactPropagation::farthest_target() {
-  copy_vertex_targets();
-  double farthest = 0;
-  for (double d : target_distance_) farthest = std::max(farthest, d);
-  return farthest;
+void Propagation::check_count() const {
+  if (static_cast<double>(window_count_) > max_windows(surface_.face_count()))
+    throw InvalidGeometry("windows_without_end", "windows without end: lengths of sides differ too much",
+                          "repair the mesh, or use the heat method");
 }
 
-std::size_t ExactPropagation::bytes() const {
-  return Propagation::bytes() + windows_.bytes() + bends_.bytes() + apex_arrivals_.capacity() * sizeof(ApexArrival) +
-         apex_arrival_origins_.capacity() * sizeof(Place);
+PropagationResult Propagation::found() && {
+  const ExactStatistics statistics{window_count_, bytes()};
+  return {std::move(distance_),
+          std::move(target_distance_),
+          std::move(reached_),
+          std::move(origins_),
+          horizon_,
+          statistics};
+}
+
+std::size_t Propagation::bytes() const {
+  return distance_.capacity() * sizeof(double) + reached_.capacity() * sizeof(ArrivalRecord) +
+         origins_.capacity() * sizeof(Origin) + targets_.capacity() * sizeof(Vec2) + windows_.bytes() + bends_.bytes() +
+         apex_arrivals_.capacity() * sizeof(ApexArrival) + apex_arrival_origins_.capacity() * sizeof(Place);
 }
 
 namespace {

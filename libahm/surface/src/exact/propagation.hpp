@@ -210,34 +210,20 @@ struct PropagationResult {
   ExactStatistics statistics;
 };
 
-/// Margin around a window in which points are still covered, and minimum width of a window; relative to the side.
-inline constexpr double window_margin = 1e-12, min_width = 1e-14;
-/// A window is dropped where its distance exceeds a known distance by more than this factor.
-inline constexpr double slack = 1 + 1e-12;
-/// Width of a bucket in mean side lengths.
-inline constexpr double bucket_width = 0.25;
-
-/// Whether an origin lies on the line of a side, in the side's frame. Rays that meet the side at a smaller angle, or from its
-/// other side by rounding, run along it. They are handled at the ends of the side.
-inline bool on_line(const Place& from, double length) { return !(-from[1] > 1e-15 * (std::abs(from[0]) + length)); }
-
-/// One propagation from a set of sources. Call `add_source` for all sources, then `run`, then `found`.
+/// Propagation from a set of sources. Call `add_source` for all sources, then `run`, then `found`.
 class Propagation {
  public:
   Propagation(const PolyhedralSurface& surface, const ExactOptions& options, std::span<const MeshPoint> targets);
-  virtual ~Propagation() = default;
-  Propagation(const Propagation&) = delete;
-  Propagation& operator=(const Propagation&) = delete;
 
   void add_source(const MeshPoint& point);
   /// @throws Cancelled, InvalidGeometry (fault windows_without_end)
-  virtual void run(const Progress& progress) = 0;
+  void run(const Progress& progress);
 
   /// Returns the results and ends the propagation.
   PropagationResult found() &&;
 
- protected:
-  virtual std::size_t bytes() const;  ///< memory in use
+ private:
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
 
   /// Rays that leave an origin in the face of a half-edge, in the frame of the half-edge. Members are as in `Window`.
   struct Ray {
@@ -246,141 +232,6 @@ class Propagation {
     double turn;
     std::uint32_t origin2;
   };
-  static constexpr double infinity = std::numeric_limits<double>::infinity();
-
-  /// Handles a window that starts at an origin.
-  virtual void start(const Window& w) = 0;
-  /// Handles a shorter distance of a vertex. `row` is its number; for targets, the number of vertices plus that of the target.
-  /// @param error  maximum amount by which the true distance is longer
-  virtual void nearer(std::size_t row, double distance, double error) = 0;
-  /// Upper bound on the distances of all targets.
-  virtual double farthest_target() = 0;
-
-  /// Processes both queues in the order of their buckets, vertices first. Ends at the horizon, or when nothing in the queues
-  /// can reach a target earlier.
-  template <class Vertices, class AtVertex, class Windows, class AtWindow>
-  void drain(Vertices& vertices, const AtVertex& at_vertex, Windows& windows, const AtWindow& at_window,
-             const Progress& progress);
-
-  void light_corner(const Ray& ray, double low, double high);
-  Ray in_next(const Ray& ray) const;
-  static void mirror(Window& w, double length);
-
-  ArrivalRecord reach(const Ray& ray, const Place& at) const;
-  /// Sets a shorter distance of a vertex; returns false if it is not shorter.
-  bool shorten(Index vertex, double distance) {
-    if (!(distance < distance_[vertex])) return false;
-    if (distance_[vertex] == infinity) ++reached_count_;
-    distance_[vertex] = distance;
-    return true;
-  }
-  void offer(Index vertex, double distance, const Ray& ray, const Place& at) {
-    if (!shorten(vertex, distance)) return;
-    reached_[vertex] = reach(ray, at);
-    nearer(static_cast<std::size_t>(vertex), distance, origin_error(ray.origin2 / 2));
-  }
-  bool has_targets() const { return !targets_of_face_.empty(); }
-  /// Offers straight paths to the targets in the face of a half-edge.
-  /// @param from     origin, in the frame of the half-edge
-  /// @param sigma    distance of the origin
-  /// @param covers   covers(at): whether rays reach the place `at`, in the frame of the half-edge
-  /// @param reached  reached(at): properties of a target there
-  /// @param error    error(at): error of its distance
-  template <class Covers, class Reach, class Error>
-  void offer_targets(Half half, const Place& from, double sigma, const Covers& covers, const Reach& reached,
-                     const Error& error);
-  double origin_error(std::size_t origin) const {
-    return origin < sources_ || origin_error_.empty() ? 0.0 : origin_error_[origin - sources_];
-  }
-  /// Copies the results of vertices to the targets at these vertices.
-  void copy_vertex_targets();
-  /// Checks the number of windows.
-  /// @throws InvalidGeometry where windows run in circles
-  void check_count() const;
-  double fraction() const { return reached_count_ / static_cast<double>(distance_.size()); }
-
-  const PolyhedralSurface& surface_;
-  double horizon_;
-  bool only_targets_;
-  Offset max_windows_;  ///< maximum number of windows; 0: no limit
-  std::size_t sources_ = 0;
-  std::vector<double> distance_, target_distance_;
-  std::vector<ArrivalRecord> reached_;
-  std::vector<Origin> origins_;
-  std::vector<double> origin_error_;  ///< errors of the origins after the sources; empty: 0
-  std::vector<Index> target_vertex_;  ///< vertex of each target; -1: none
-  Offset window_count_ = 0;
-
- private:
-  void place_targets(std::span<const MeshPoint> targets);
-  void add_vertex_source(std::uint32_t origin2, Index vertex);
-  void light_face_beyond_right(const Ray& ray);
-  void light_right(const Ray& ray, double begin, double end);
-  Window beyond_right(const Ray& ray, double begin, double end) const;
-  void offer_targets_in_face(const Ray& ray);
-
-  std::vector<Vec2> targets_;            ///< positions of the targets in the frame of side 0 of their faces
-  std::vector<Index> target_order_;      ///< numbers of the targets, sorted by face
-  std::vector<Offset> targets_of_face_;  ///< first entry of each face in `target_order_`, faces + 1; empty: no targets
-  Index reached_count_ = 0;              ///< number of vertices with a distance
-};
-
-template <class Vertices, class AtVertex, class Windows, class AtWindow>
-void Propagation::drain(Vertices& vertices, const AtVertex& at_vertex, Windows& windows, const AtWindow& at_window,
-                        const Progress& progress) {
-  Offset chunks = 0;
-  while (!windows.empty() || !vertices.empty()) {
-    progress.step("windows", fraction());
-    if (windows.key() > horizon_) break;
-    if (only_targets_) horizon_ = std::min(horizon_, farthest_target());
-    if (windows.key() > horizon_) break;
-    if (max_windows_ > 0 && window_count_ >= max_windows_) {
-      horizon_ = windows.key();
-      break;
-    }
-    while (!windows.bucket_empty() || !vertices.bucket_empty()) {
-      while (!vertices.bucket_empty()) vertices.drain_chunk(at_vertex);
-      if (windows.bucket_empty()) continue;
-      windows.drain_chunk(at_window);
-      check_count();
-      if (++chunks % 65536 == 0) progress.step("windows", fraction());
-    }
-    windows.advance();
-    vertices.advance();
-  }
-}
-
-template <class Covers, class Reach, class Error>
-void Propagation::offer_targets(Half half, const Place& from, double sigma, const Covers& covers, const Reach& reached,
-                                const Error& error) {
-  const Index face = half / 3;
-  const HalfRecord& side0 = surface_.record(3 * face);
-  const HalfRecord& r = surface_.record(half);
-  const int s = half % 3;
-  for (Offset k = targets_of_face_[face]; k < targets_of_face_[face + 1]; ++k) {
-    const Index target = target_order_[k];
-    const Place& placed = targets_[target];
-    const Place at = s == 0 ? placed : s == 1 ? exact::in_next(side0, placed) : in_previous(side0, placed);
-    const double d = sigma + distance(from, at);
-    if (!(d < target_distance_[target]) || !covers(at)) continue;
-    target_distance_[target] = d;
-    ArrivalRecord& there = reached_[distance_.size() + target];
-    there = reached(at);
-    there.from = s == 0 ? from : s == 1 ? in_previous(r, from) : exact::in_next(r, from);
-    there.half = 3 * face;
-    nearer(distance_.size() + static_cast<std::size_t>(target), d, error(at));
-  }
-}
-
-class ExactPropagation final : public Propagation {
- public:
-  ExactPropagation(const PolyhedralSurface& surface, const ExactOptions& options, std::span<const MeshPoint> targets);
-
-  void run(const Progress& progress) override;
-
- private:
-  std::size_t bytes() const override;
-
   /// A vertex at which shortest paths may bend.
   struct Bend {
     Index vertex;
@@ -392,8 +243,29 @@ class ExactPropagation final : public Propagation {
     double crossing;
   };
 
-  void start(const Window& w) override;
-  void nearer(std::size_t row, double distance, double error) override;
+  void place_targets(std::span<const MeshPoint> targets);
+
+  void add_vertex_source(std::uint32_t origin2, Index vertex);
+  Ray in_next(const Ray& ray) const;
+  void light_face_beyond_right(const Ray& ray);
+  void light_right(const Ray& ray, double begin, double end);
+  Window beyond_right(const Ray& ray, double begin, double end) const;
+  static void mirror(Window& w, double length);
+  void light_corner(const Ray& ray, double low, double high);
+
+  ArrivalRecord reach(const Ray& ray, const Place& at) const;
+  void offer(Index vertex, double distance, const Ray& ray, const Place& at);
+  bool has_targets() const { return !targets_of_face_.empty(); }
+  /// Offers straight paths to the targets in the face of a ray's half-edge.
+  /// @param covers  covers(at): whether rays reach the place `at`, in the frame of the half-edge
+  template <class Covers>
+  void offer_targets(const Ray& ray, const Covers& covers);
+  void offer_targets_in_face(const Ray& ray);
+  void offer_targets_of(const Window& w);
+  /// Copies the results of vertices to the targets at these vertices.
+  void copy_vertex_targets();
+  /// The distance of the farthest target so far.
+  double farthest_target();
 
   void bend(const Bend& event);
   void fill(Corner corner, double turned, double high, std::uint32_t origin2);
@@ -404,9 +276,27 @@ class ExactPropagation final : public Propagation {
   inline void continue_right(const Window& w, const HalfRecord& r, double sigma, double to_apex);
   inline void push(const Window& w, double sigma, double at_begin, double at_end);
   bool hides(const Window& w, bool right) const;
-  void offer_targets_of(const Window& w, double sigma);
-  double farthest_target() override;
 
+  /// Checks the number of windows.
+  /// @throws InvalidGeometry where windows run in circles
+  void check_count() const;
+  double fraction() const { return reached_count_ / static_cast<double>(distance_.size()); }
+  std::size_t bytes() const;  ///< memory in use
+
+  const PolyhedralSurface& surface_;
+  double horizon_;
+  bool only_targets_;
+  Offset max_windows_;  ///< maximum number of windows; 0: no limit
+  std::size_t sources_ = 0;
+  std::vector<double> distance_, target_distance_;
+  std::vector<ArrivalRecord> reached_;
+  std::vector<Origin> origins_;
+  std::vector<Vec2> targets_;            ///< positions of the targets in the frame of side 0 of their faces
+  std::vector<Index> target_vertex_;     ///< vertex of each target; -1: none
+  std::vector<Index> target_order_;      ///< numbers of the targets, sorted by face
+  std::vector<Offset> targets_of_face_;  ///< first entry of each face in `target_order_`, faces + 1; empty: no targets
+  Index reached_count_ = 0;              ///< number of vertices with a distance
+  Offset window_count_ = 0;
   std::vector<ApexArrival> apex_arrivals_;   ///< best window of each half-edge
   std::vector<Place> apex_arrival_origins_;  ///< origin of that window; empty: not needed
   BucketQueue<Window> windows_;

@@ -33,7 +33,6 @@ struct Settings {
   double t_coef = 1;             ///< > 0
   std::optional<double> radius;  ///< world units, > 0
   std::optional<Vec3> u_axis;    ///< direction in world coordinates
-  double tolerance = 0;          ///< tolerance of exact maps (`ExactMapOptions`)
 };
 
 struct SessionOptions {

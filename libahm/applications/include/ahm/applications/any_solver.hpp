@@ -5,7 +5,6 @@
 /// ahm::Atlas by_heat = ahm::make_atlas(solver, sources, faces);             // ahm::LogMapSolver
 /// ahm::Atlas polar = ahm::make_atlas(polar_solver, sources, faces);         // ahm::PolarMapSolver
 /// ahm::Atlas exact = ahm::make_atlas(geodesics, sources, faces);            // ahm::ExactGeodesics
-/// ahm::Atlas within = ahm::make_atlas({geodesics, {.tolerance = 1e-3}}, sources, faces);
 /// \endcode
 #pragma once
 
@@ -25,9 +24,7 @@ class AnySolver {
   AnySolver(const LogMapSolver& solver) : solver_(&solver) {}
   /// @param threads  number of threads for several maps; 0: one per core
   AnySolver(const PolarMapSolver& solver, unsigned threads = 0) : polar_(&solver), threads_(threads) {}
-  /// @param options  only `tolerance` and `threads` are used; radius and frames are set for each map
-  AnySolver(const ExactGeodesics& geodesics, const ExactMapOptions& options = {})
-      : geodesics_(&geodesics), tolerance_(options.tolerance), threads_(options.threads) {}
+  AnySolver(const ExactGeodesics& geodesics, unsigned threads = 0) : geodesics_(&geodesics), threads_(threads) {}
 
   Method method() const noexcept {
     return solver_ != nullptr ? Method::heat : polar_ != nullptr ? Method::polar : Method::exact;
@@ -62,7 +59,6 @@ class AnySolver {
   const LogMapSolver* solver_ = nullptr;
   const PolarMapSolver* polar_ = nullptr;
   const ExactGeodesics* geodesics_ = nullptr;
-  double tolerance_ = 0;
   unsigned threads_ = 0;
 };
 

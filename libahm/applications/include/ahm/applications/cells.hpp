@@ -35,7 +35,7 @@ VoronoiCells voronoi_cells(const TangentGraph& graph, std::span<const Vertex> ve
 /// @throws as the overload for graphs; InvalidArgument (a front with more points than `vertices`)
 VoronoiCells voronoi_cells(Wavefront& front, std::span<const Vertex> vertices);
 /// Voronoi cells by exact distances over the flat faces.
-/// @param options  radius, beyond which there are no cells; tolerance; progress
+/// @param options  radius, beyond which there are no cells; progress
 /// @throws as the overload for graphs, as `ExactGeodesics::log_map`
 VoronoiCells voronoi_cells(const ExactGeodesics& geodesics, std::span<const Vertex> vertices,
                            const ExactMapOptions& options = {});
@@ -53,7 +53,7 @@ std::vector<Vertex> farthest_points(const TangentGraph& graph, Vertex first, Ind
 std::vector<Vertex> farthest_points(Wavefront& front, Vertex first, Index count, const Progress& progress = {},
                                     std::span<const Vertex> among = {});
 /// Farthest points by exact distances over the flat faces; of equally far vertices the first is taken.
-/// @param options  tolerance; progress, as in the overload for graphs. The radius is ignored
+/// @param options  progress, as in the overload for graphs. The radius is ignored
 /// @throws as the overload for graphs, as `ExactGeodesics::log_map`
 std::vector<Vertex> farthest_points(const ExactGeodesics& geodesics, Vertex first, Index count,
                                     const ExactMapOptions& options = {}, std::span<const Vertex> among = {});

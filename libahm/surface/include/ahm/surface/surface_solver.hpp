@@ -68,7 +68,6 @@ struct AutomaticOptions {
 
 /// Options of the method `exact`.
 struct ExactSolverOptions {
-  double tolerance = 0;  ///< as `ExactMapOptions::tolerance`
   unsigned threads = 0;  ///< 0: one per core. No result depends on it
 };
 

@@ -31,10 +31,6 @@ namespace ahm {
 struct ExactMapOptions {
   /// Vertices farther than this get `Status::beyond_radius`, and the propagation ends there. World units; > 0.
   double radius = std::numeric_limits<double>::infinity();
-  /// Maximum relative error of distances, in [0, 0.1]. 0: exact. Above 0, the time is nearly linear in the number of vertices
-  /// (`exact::ExactOptions`). Directions may be off by about sqrt(2 tolerance), as those of paths that much longer are. Where
-  /// two paths differ by less than the tolerance, the direction may be that of either.
-  double tolerance = 0;
   Offset max_windows = 0;  ///< as in `exact::ExactOptions`
   bool frames = false;     ///< fill `LogMap::frames`
   Progress progress;

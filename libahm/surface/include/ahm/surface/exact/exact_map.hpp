@@ -20,9 +20,6 @@ namespace ahm::exact {
 struct ExactOptions {
   /// Vertices and targets farther than this get `Status::beyond_radius`, and the propagation ends there. World units; > 0.
   double radius = std::numeric_limits<double>::infinity();
-  /// Maximum relative error of distances, in [0, 0.1]. 0: exact up to rounding. Above 0, adjacent windows are merged: the time
-  /// is nearly linear in the number of vertices, and directions are blended where windows merge. Paths require exact maps.
-  double tolerance = 0;
   /// The propagation also ends after this many windows; 0: no limit. Vertices and targets beyond the completed distance get
   /// `Status::beyond_radius`. That distance does not depend on the machine.
   Offset max_windows = 0;
@@ -93,8 +90,6 @@ class ExactMap {
   const MeshPoint& target(std::size_t k) const { return targets_[k]; }
 
   const ExactStatistics& statistics() const noexcept { return statistics_; }
-  /// Relative tolerance of the distances; above 0, `arrival` is approximate.
-  double tolerance() const noexcept { return tolerance_; }
 
  private:
   friend class MapBuilder;
@@ -108,13 +103,12 @@ class ExactMap {
   std::vector<Origin> origins_;
   std::vector<MeshPoint> sources_, targets_;
   ExactStatistics statistics_;
-  double tolerance_ = 0;
 };
 
 /// Shortest paths on the polyhedral surface, exact up to rounding, by the improved Chen-Han algorithm. Windows are unfolded
 /// from face to face [CH90], discarded where a vertex is nearer [XW09], and processed in the order of buckets.
 /// @param sources  one or more points; each has its own axes
-/// @throws InvalidArgument (no source, a point outside its face, radius, tolerance), InvalidGeometry (fault
+/// @throws InvalidArgument (no source, a point outside its face, radius), InvalidGeometry (fault
 /// windows_without_end: lengths below the rounding error of distances; fault windows_lost: needles with angles below the
 /// rounding error), ResourceExhausted, Cancelled
 ExactMap exact_map(const PolyhedralSurface& surface, std::span<const MeshPoint> sources,

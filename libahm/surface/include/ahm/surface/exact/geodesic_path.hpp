@@ -31,7 +31,7 @@ struct GeodesicPath {
 /// The shortest path of an exact map, by unfolding the faces between the points where it bends. Linear in the number of its
 /// points.
 /// @param surface  surface of the map
-/// @throws InvalidArgument (vertex or target out of range, a map with a tolerance)
+/// @throws InvalidArgument (vertex or target out of range)
 GeodesicPath path_to_vertex(const PolyhedralSurface& surface, const ExactMap& map, Vertex vertex);
 GeodesicPath path_to_target(const PolyhedralSurface& surface, const ExactMap& map, std::size_t target);
 
