@@ -168,6 +168,14 @@ Axes ExactGeodesics::axes(const SurfacePoint& at, const SurfaceSource& placed, c
   return at_corner(static_cast<exact::Half>(3 * inside.face + (corner - inside.barycentric.begin())), u);
 }
 
+/// Sources in the form of the heat method, with their points and axes on the triangles.
+struct ExactGeodesics::PlacedSources {
+  std::vector<exact::MeshPoint> points;
+  std::vector<Axes> axes;
+  std::vector<Source> sources;
+  std::vector<Vec2> positions;
+};
+
 ExactGeodesics::PlacedSources ExactGeodesics::placed(std::span<const ExactSource> sources) const {
   PlacedSources result;
   for (const ExactSource& s : sources) {

@@ -119,13 +119,7 @@ class ExactGeodesics {
  private:
   /// Axes of a source in the tangent plane of `exact::ExactMap::direction`: u is (a[0], a[2]), v is (a[1], a[3]).
   using Axes = std::array<double, 4>;
-  /// Sources in the form of the heat method, with their points and axes on the triangles.
-  struct PlacedSources {
-    std::vector<exact::MeshPoint> points;
-    std::vector<Axes> axes;
-    std::vector<Source> sources;
-    std::vector<Vec2> positions;
-  };
+  struct PlacedSources;
   static PlacedSources at_vertex(const FlatTriangles& flat, Vertex source);
   exact::ExactMap exact_map(const PlacedSources& from, const ExactMapOptions& options) const;
   LabelledLogMap log_map(const PlacedSources& from, Source source, const ExactMapOptions& options) const;
