@@ -300,6 +300,7 @@ Wavefront::OneRings::OneRings(const TangentGraph& graph, std::vector<std::uint8_
     : vertices_(graph.size()), size_(vertices_) {
   const bool any = std::find(halved.begin(), halved.end(), 1) != halved.end();
   if ((!any && !all) || graph.dimension() != 2) return;
+  all_ = all;
   constexpr Offset chunk = 1 << 12;
   std::vector<std::vector<Corner>> parts(static_cast<std::size_t>(vertices_ / chunk) + 1);
   begin_.assign(static_cast<std::size_t>(vertices_) + 1, 0);

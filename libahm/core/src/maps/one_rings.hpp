@@ -48,7 +48,7 @@ class Wavefront::OneRings {
   }
 
   /// Whether the corners of a point are stored.
-  bool keeps(Index point) const { return !of(point).empty(); }
+  bool keeps(Index point) const { return all_ || !of(point).empty(); }
   /// Gaussian curvature at a point whose corners are stored; at a midpoint the mean of the ends.
   double curvature(Index point) const { return curvatures_[point]; }
   /// Gaussian curvature: the angle defect divided by a third of the area of the triangles. 0 at the boundary, and if the defect may be
@@ -74,6 +74,7 @@ class Wavefront::OneRings {
   static void find_neighbors(const TangentGraph& graph, Index vertex, std::vector<Neighbor>& neighbors);
 
   Index vertices_, size_;
+  bool all_ = false;  ///< whether the corners of all points are stored
   std::vector<Offset> begin_;
   std::vector<Corner> corners_;
   std::vector<double> curvatures_;  ///< Gaussian curvature at the stored points

@@ -33,7 +33,7 @@ std::vector<double> jumps(const TangentGraph& graph, std::span<const double> coo
       const Index j = star.neighbors[e];
       if (status[j] != Status::ok) continue;
       const double apart =
-          std::hypot(coordinates[2 * j] - coordinates[2 * i], coordinates[2 * j + 1] - coordinates[2 * i + 1]);
+          length(Vec2{coordinates[2 * j] - coordinates[2 * i], coordinates[2 * j + 1] - coordinates[2 * i + 1]});
       const double excess = (apart - unit * length(star.log(e))) / 2;
       if (excess > rounding * apart) jump[i] = std::max(jump[i], excess);
     }

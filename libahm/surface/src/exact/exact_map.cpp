@@ -48,16 +48,10 @@ void check_reached(const PolyhedralSurface& surface, const PropagationResult& fo
             std::to_string(from),
         "repair the needle triangles there, or use the polar or the heat method (paths: locally_shortest_path)");
   };
-  for (Index v = 0; v < surface.vertex_count(); ++v) {
-    if (!(distance[v] < found.horizon)) continue;  // most vertices, where the radius is small
-    const Corner first = surface.first_corner(v);
-    for (Corner c = first; c.half >= 0;) {
-      const HalfRecord r = surface.record(c.half);
-      check(v, r.head, r.length);
-      check(v, r.apex, r.left);
-      c = surface.turn_left(c);
-      if (c.half == first.half) break;
-    }
+  for (Half h = 0; h < 3 * surface.face_count(); ++h) {
+    const HalfRecord r = surface.record(h);
+    check(r.tail, r.head, r.length);
+    check(r.head, r.tail, r.length);
   }
 }
 

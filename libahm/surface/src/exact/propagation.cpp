@@ -142,7 +142,7 @@ void Propagation::light_right(const Ray& ray, double begin, double end) {
   if (on_line(w.from, r.right)) return;
   const double sigma = origins_[w.origin()].distance;
   const double at_begin = sigma + distance(w.from, {w.begin, 0}), at_end = sigma + distance(w.from, {w.end, 0});
-  if (!loses(w, at_begin, at_end)) push(w, sigma, at_begin, at_end);
+  if (!loses(w, surface_.record(w.half), at_begin, at_end)) push(w, sigma, at_begin, at_end);
 }
 
 /// The window through an interval of the right side, measured from its apex, in the frame of the face beyond.
@@ -290,16 +290,16 @@ void Propagation::push(const Window& w, double sigma, double at_begin, double at
 }
 
 /// Whether no shortest path crosses a window, because one of the ends of its half-edge is nearer [XW09].
-bool Propagation::loses(const Window& w, double at_begin, double at_end) const {
-  const HalfRecord& r = surface_.record(w.half);
+/// @param r  record of its half-edge
+bool Propagation::loses(const Window& w, const HalfRecord& r, double at_begin, double at_end) const {
   return at_end > (distance_[r.tail] + w.end) * slack || at_begin > (distance_[r.head] + r.length - w.begin) * slack;
 }
 
 void Propagation::cross_face(const Window& w) {
-  const HalfRecord& r = surface_.record(w.half);
+  const HalfRecord r = surface_.record(w.half);
   const double sigma = origins_[w.origin()].distance;
   const double at_begin = sigma + distance(w.from, {w.begin, 0}), at_end = sigma + distance(w.from, {w.end, 0});
-  if (loses(w, at_begin, at_end)) return;  // again, as distances may have become shorter since it was queued
+  if (loses(w, r, at_begin, at_end)) return;  // again, as distances may have become shorter since it was queued
   if (has_targets()) offer_targets_of(w);
 
   const double crossing = crossing_to(w.from, apex(r));

@@ -124,7 +124,7 @@ class BucketQueue {
 /// A point or an origin in the frame of a half-edge.
 using Place = Vec2;
 
-inline double distance(const Place& a, const Place& b) { return norm(a - b); }
+[[gnu::always_inline]] inline double distance(const Place& a, const Place& b) { return norm(a - b); }
 /// The angle between two vectors, in [0, pi].
 inline double angle_between(const Vec2& a, const Vec2& b) { return std::abs(std::atan2(cross(a, b), dot(a, b))); }
 inline Place apex(const HalfRecord& r) { return {r.apex_x, r.apex_y}; }
@@ -270,7 +270,7 @@ class Propagation {
   void bend(const Bend& event);
   void fill(Corner corner, double turned, double high, std::uint32_t origin2);
 
-  inline bool loses(const Window& w, double at_begin, double at_end) const;
+  inline bool loses(const Window& w, const HalfRecord& r, double at_begin, double at_end) const;
   void cross_face(const Window& w);
   inline void continue_left(const Window& w, const HalfRecord& r, double sigma, double to_apex);
   inline void continue_right(const Window& w, const HalfRecord& r, double sigma, double to_apex);

@@ -31,10 +31,10 @@ inline double power_of_two_below(double x) {
   return x == 0 ? 1.0 : std::ldexp(1.0, std::clamp(std::ilogb(x), -1022, 1022));
 }
 
-/// Euclidean length without overflow or underflow. Scaling the vector by a power of two scales the result exactly.
-inline double length(std::span<const double> v) {
-  const double squared = dot(v, v);
-  if ((squared > 1e-280 && squared < 1e280) || std::isnan(squared)) return std::sqrt(squared);
+namespace detail {
+
+/// `length` of vectors whose squared length overflows or underflows.
+[[gnu::noinline]] inline double scaled_length(std::span<const double> v) {
   double largest = 0;
   for (double x : v) largest = std::max(largest, std::abs(x));
   if (largest == 0 || std::isinf(largest)) return largest;
@@ -42,6 +42,15 @@ inline double length(std::span<const double> v) {
   double sum = 0;
   for (double x : v) sum += (x / unit) * (x / unit);
   return unit * std::sqrt(sum);
+}
+
+}  // namespace detail
+
+/// Euclidean length without overflow or underflow. Scaling the vector by a power of two scales the result exactly.
+inline double length(std::span<const double> v) {
+  const double squared = dot(v, v);
+  if ((squared > 1e-280 && squared < 1e280) || std::isnan(squared)) return std::sqrt(squared);
+  return detail::scaled_length(v);
 }
 
 }  // namespace ahm

@@ -68,7 +68,7 @@ class PolyhedralSurface {
   Index vertex_count() const noexcept { return static_cast<Index>(corner_.size()); }
   Index face_count() const noexcept { return static_cast<Index>(face_.size()); }
 
-  HalfRecord record(Half h) const {
+  [[gnu::always_inline]] HalfRecord record(Half h) const {
     const auto [face, s] = split(h);
     const Face& f = face_[face];
     const std::uint32_t n = s == 2 ? 0 : s + 1, p = s == 0 ? 2 : s - 1;
