@@ -62,12 +62,14 @@ FaceSides lay_out(Index face, const std::array<double, 3>& l) {
 void check_twin(const HalfEdges& edges, Half h) {
   const Half t = edges.twin[h];
   if (t < 0) return;
-  const std::string where = "half-edge " + std::to_string(h) + " of face " + std::to_string(h / 3);
-  if (t >= edges.size() || t == h || edges.twin[t] != h) throw InvalidGeometry(where + " and its twin are not mutual");
+  const auto refuse_side = [&](const char* reason) {
+    throw InvalidGeometry("half-edge " + std::to_string(h) + " of face " + std::to_string(h / 3) + reason);
+  };
+  if (t >= edges.size() || t == h || edges.twin[t] != h) refuse_side(" and its twin are not mutual");
   const bool mirrored = edges.is_mirrored(h);
-  if (mirrored != edges.is_mirrored(t)) throw InvalidGeometry(where + " is mirrored, but its twin is not");
+  if (mirrored != edges.is_mirrored(t)) refuse_side(" is mirrored, but its twin is not");
   if (edges.tail[mirrored ? next(t) : t] != edges.head(h) || edges.tail[mirrored ? t : next(t)] != edges.tail[h])
-    throw InvalidGeometry(where + " is glued to a side between other vertices");
+    refuse_side(" is glued to a side between other vertices");
 }
 
 /// Checks that there is one layout per face.
