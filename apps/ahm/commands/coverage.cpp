@@ -46,7 +46,7 @@ void write_coverage(const std::string& file, const std::string& format, const Co
 namespace {
 
 constexpr const char* coverage_footer =
-    "SPEC is 123, x,y,z or face:7:.2,.3,.5 as in 'ahm logmap'.\n"
+    "SPEC is 123, x,y,z (the nearest vertex) or face:7:.2,.3,.5 as in 'ahm logmap'.\n"
     "OUTPUT is .csv, .jsonl, or .ply and .vtp with edges between consecutive points; one row per point, in order\n"
     "along the path:\n"
     "  index      number of the point, from 0 (.csv, .jsonl)\n"

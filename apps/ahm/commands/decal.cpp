@@ -25,8 +25,8 @@ namespace ahm::app {
 namespace {
 
 constexpr const char* decal_footer =
-    "SPEC is 123, x,y,z or face:7:.2,.3,.5 as in 'ahm logmap'. It is the center of the image. The image runs from\n"
-    "left to right along the u axis, turned by --angle.\n"
+    "SPEC is 123, x,y,z (the nearest vertex) or face:7:.2,.3,.5 as in 'ahm logmap'. It is the center of the\n"
+    "image. The image runs from left to right along the u axis, turned by --angle.\n"
     "\n"
     "OUTPUT  .obj or .glb  the surface in gray, and slightly above it the part under the image, cut at the borders of\n"
     "                      the image, with the image as texture (including opacity); for clouds only that part\n"

@@ -17,7 +17,8 @@ namespace ahm::app {
 namespace {
 
 constexpr const char* inverse_footer =
-    "SPEC is 123, x,y,z or face:7:.2,.3,.5 as in 'ahm logmap'.\n"
+    "SPEC is 123, x,y,z (the nearest vertex) or face:7:.2,.3,.5 as in 'ahm logmap': with the same --source, (u, v)\n"
+    "are those of 'ahm logmap'.\n"
     "POINTS is a list 'u,v u,v ...' or a file with one pair per line, in the unit of INPUT.\n"
     "OUTPUT is .csv, .jsonl, .ply or .vtp; one row per pair. Numbers are nan where the map has no such point, or its\n"
     "quality there is below --min-quality:\n"
