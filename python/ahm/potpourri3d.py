@@ -116,7 +116,8 @@ def _without_faults(V: Matrix, F: Faces) -> np.ndarray:
 class MeshHeatMethodDistanceSolver(_Heat):
     """Geodesic distance on a triangle mesh by the heat method (`ahm.distance_and_gradient`).
 
-    Faces that repeat a corner or another face are left out. The mesh is cut open at nonmanifold edges and vertices.
+    Faces that repeat a corner or another face are left out. The mesh is cut open at nonmanifold edges and vertices. Distances on
+    sheets that are joined to that of the source only there are NaN; `PointCloudHeatSolver` has distances on all sheets.
 
     use_robust : use the intrinsic Delaunay triangulation.
 

@@ -9,6 +9,7 @@ from scipy.sparse import csc_matrix
 
 import ahm
 import ahm.potpourri3d as pp3d
+from ahm._curve_distances import _same
 
 
 @pytest.fixture(scope="module")
@@ -284,6 +285,13 @@ def test_closed_curves_are_positive_inside_if_counter_clockwise(flat):
         assert (found[inside] > 0).all() and (found[outside] < 0).all()
 
 
+def test_points_of_curves_are_the_same_only_if_their_values_are(flat):
+    point = pp3d.MeshFastMarchingDistanceSolver(*flat)._point
+    given = [3, 4, (3, [0.25]), (3, [0.25 + 1e-10]), (3, [0.2, 0.3]), (3, [0.2, 0.3 + 1e-10]), (4, [0.2, 0.3])]
+    same = [[_same(point(a, "a"), point(b, "b")) for a in given] for b in given]
+    np.testing.assert_array_equal(same, np.eye(len(given)))
+
+
 def test_points_of_curves_are_rows_points_on_edges_and_points_in_faces(flat):
     V, F = flat
     fast, edges = pp3d.MeshFastMarchingDistanceSolver(V, F), pp3d.edges(V, F)
@@ -338,6 +346,12 @@ def test_distances_accept_meshes_with_faults(flat):
     assert found.shape == (300,) and (found[[1, 2, 3]] == 0).all() and (found[np.isfinite(found)] >= 0).all()
     with pytest.raises(ValueError, match="faces"):
         pp3d.MeshVectorHeatSolver(P, soup)
+
+
+def test_distances_end_where_sheets_meet_in_edges_of_three_faces():
+    V = np.array([[0, 0, 0], [0, 1, 0], [1, 0, 0], [-1, 0, 1], [-1, 0, -1]])
+    found = pp3d.compute_distance(V, [[0, 1, 2], [1, 0, 3], [0, 1, 4]], 2)
+    assert np.isfinite(found[:3]).all() and np.isnan(found[3:]).all()
 
 
 def test_limits_on_iterations_are_accepted(flat):

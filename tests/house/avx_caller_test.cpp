@@ -1,4 +1,4 @@
-// Compiled with -mavx against the plainly compiled library: Eigen's alignment differs on the two sides of the border.
+// Compiled with -mavx and without inlining, against the plainly compiled library. Eigen aligns memory differently in the two.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -20,4 +20,19 @@ TEST(AvxCaller, SeesResultsAsEigenMatrices) {
   const Eigen::MatrixXd copy = ahm::values(field);
   EXPECT_EQ(copy.rows(), 900);
   EXPECT_NEAR((copy.rowwise().norm() - distance).cwiseAbs().maxCoeff(), 0, 1e-10);
+}
+
+// The linker keeps one of several functions of the same name. If libahm shared names with the caller, it would free memory that the
+// caller's functions have aligned, and abort.
+TEST(AvxCaller, SharesNoFunctionOfEigenWithTheLibrary) {
+  for (int d = 3; d < 12; ++d) {
+    Eigen::MatrixXd mirror;
+    mirror.resize(d, d);
+    mirror.setIdentity();
+    mirror(1, 1) = -1;
+    EXPECT_EQ(mirror.partialPivLu().determinant(), -1);
+    const ahm::TransportLayout layout{ahm::TransportKind::block, d};
+    layout.make_orthogonal(mirror.data());
+    EXPECT_TRUE(ahm::Transport(layout, mirror.data()).reflects());
+  }
 }

@@ -6,11 +6,16 @@
 #include <array>
 #include <cmath>
 #include <random>
+#include <type_traits>
 #include <vector>
 
 #include "ahm/conformance/clouds.hpp"
+#include "ahm/graph/csr_graph.hpp"
+#include "ahm/maps/log_map_solver.hpp"
 #include "ahm/maps/quality.hpp"
 #include "ahm/pointcloud/point_cloud_surface.hpp"
+#include "ahm/surface/exact/exact_geodesics.hpp"
+#include "ahm/surface/polar_map_solver.hpp"
 #include "ahm/surface/row_local_maps.hpp"
 #include "ahm/surface/row_map.hpp"
 #include "ahm/util/vec.hpp"
@@ -142,6 +147,16 @@ trimesh::TriangleMeshSurface sheet() {
 Vec2 on_sheet(std::size_t row) { return {static_cast<double>(row % 4), static_cast<double>(row / 4)}; }
 
 const std::vector<MethodOptions> all_methods{PolarSolverOptions{}, HeatOptions{}, ExactSolverOptions{}};
+
+// A solver of a temporary surface would refer to it after its end. A surface that is not constant is moved into the solver.
+using pointcloud::PointCloudSurface;
+static_assert(std::is_constructible_v<SurfaceSolver, const PointCloudSurface&>);
+static_assert(std::is_constructible_v<SurfaceSolver, PointCloudSurface>);
+static_assert(!std::is_constructible_v<SurfaceSolver, const PointCloudSurface>);
+static_assert(!std::is_constructible_v<LogMapSolver, const CsrGraph> &&
+              !std::is_constructible_v<LogMapSolver, CsrGraph>);
+static_assert(!std::is_constructible_v<PolarMapSolver, const PointCloudSurface>);
+static_assert(!std::is_constructible_v<ExactGeodesics, const PointCloudSurface>);
 
 TEST(SurfaceSolver, MapsAreThoseOfTheSolversBelow) {
   const auto mesh = surface_of(split_icosphere(642));

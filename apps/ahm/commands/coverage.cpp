@@ -46,7 +46,7 @@ void write_coverage(const std::string& file, const std::string& format, const Co
 namespace {
 
 constexpr const char* coverage_footer =
-    "SPEC is 123, x,y,z or face:7:0.2,0.3,0.5 as in 'ahm logmap'.\n"
+    "SPEC is 123, x,y,z (the nearest vertex) or face:7:0.2,0.3,0.5 as in 'ahm logmap'.\n"
     "OUTPUT is .csv, .jsonl, or .ply and .vtp with edges between consecutive points; one row per point, in order\n"
     "along the path:\n"
     "  index      number of the point, from 0 (.csv, .jsonl)\n"
@@ -233,6 +233,7 @@ void offer(CLI::App& app, CoverageCommandOptions& o) {
   add_min_quality(app, o.min_quality);
   add_u_axis(app, o.source);
   add_method(app, o.solve);
+  add_tolerance(app, o.solve);
   add_graph_options(app, o.input, o.solve);
   add_local(app, o.input, "Up to --radius");
   add_map_results(app, o.output);

@@ -25,8 +25,8 @@ namespace ahm::app {
 namespace {
 
 constexpr const char* decal_footer =
-    "SPEC is 123, x,y,z or face:7:0.2,0.3,0.5 as in 'ahm logmap'. It is the center of the image. The image runs from\n"
-    "left to right along the u axis, turned by --angle.\n"
+    "SPEC is 123, x,y,z (the nearest vertex) or face:7:0.2,0.3,0.5 as in 'ahm logmap'. It is the center of the\n"
+    "image. The image runs from left to right along the u axis, turned by --angle.\n"
     "\n"
     "OUTPUT  .obj or .glb  the surface in gray, and slightly above it the part under the image, cut at the borders of\n"
     "                      the image, with the image as texture (including opacity); for clouds only that part\n"
@@ -189,6 +189,7 @@ void offer(CLI::App& app, DecalCommandOptions& o) {
   add_min_quality(app, o.min_quality);
   add_u_axis(app, o.source);
   add_method(app, o.solve);
+  add_tolerance(app, o.solve);
   add_graph_options(app, o.input, o.solve);
   add_local(app, o.input, "Up to the corners of the image, or to --radius");
   add_json(app, o.output);

@@ -17,7 +17,8 @@ namespace ahm::app {
 namespace {
 
 constexpr const char* inverse_footer =
-    "SPEC is 123, x,y,z or face:7:0.2,0.3,0.5 as in 'ahm logmap'.\n"
+    "SPEC is 123, x,y,z (the nearest vertex) or face:7:0.2,0.3,0.5 as in 'ahm logmap': with the same --source, (u, v)\n"
+    "are those of 'ahm logmap'.\n"
     "POINTS is a list 'u,v u,v ...' or a file with one pair per line, in the unit of INPUT.\n"
     "OUTPUT is .csv, .jsonl, .ply or .vtp; one row per pair. Numbers are nan where the map has no such point, or its\n"
     "quality there is below --min-quality:\n"
@@ -100,6 +101,7 @@ void offer(CLI::App& app, InverseCommandOptions& o) {
   add_min_quality(app, o.min_quality);
   add_u_axis(app, o.source);
   add_method(app, o.solve, {Method::polar, Method::exact}, true);
+  add_tolerance(app, o.solve);
   add_strategy(app, o.solve);
   add_graph_options(app, o.input, o.solve);
   add_local(app, o.input, "Up to the farthest of POINTS");

@@ -16,7 +16,8 @@ namespace ahm::app {
 namespace {
 
 constexpr const char* trace_footer =
-    "SPEC is 123, x,y,z (the nearest point of the surface) or face:7:0.2,0.3,0.5 as in 'ahm path'.\n"
+    "SPEC is 123, x,y,z (the nearest point of the surface) or face:7:0.2,0.3,0.5 as in 'ahm path'. The maps of\n"
+    "'ahm logmap' and 'ahm inverse' start at the vertex nearest to x,y,z: to start there, use its number.\n"
     "The line runs straight through faces, and through vertices with equal angles on both sides. Over a cloud it runs\n"
     "from tangent plane to tangent plane. It ends early at a boundary.\n"
     "DIRECTION is a vector X,Y,Z in space, projected to the surface, or an angle in degrees from the u axis of\n"

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <new>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "ahm/error.hpp"
 #include "ahm/io/formats.hpp"
@@ -192,6 +193,8 @@ void Results::write_view(const render::Scene& scene, Journal& journal, const ren
   } catch (const Cancelled&) {
     throw;
   } catch (const std::bad_alloc&) {
+    fail("out of memory");
+  } catch (const std::length_error&) {  // an array too long for any memory
     fail("out of memory");
   } catch (const Error& error) {
     fail(worded(error));

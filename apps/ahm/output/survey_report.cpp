@@ -51,8 +51,8 @@ std::string parts_text(const Survey& s) {
   double total = 0;
   for (Index size : sizes) total += size;
   const std::string at = s.as_cloud ? fmt::format(" at k = {}", figure<std::int64_t>(*s.surface, "k")) : "";
-  return fmt::format("{}{}; the largest has {} ({:.1f} %)", sizes.size(), at, counted(sizes[0], "vertex"),
-                     100.0 * sizes[0] / total);
+  return fmt::format("{}{}; the largest has {} ({:.1f} % of the vertices of all components)", sizes.size(), at,
+                     counted(sizes[0], "vertex"), 100.0 * sizes[0] / total);
 }
 
 std::string range_text(const LengthRange& range, const char* what) {

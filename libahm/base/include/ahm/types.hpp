@@ -7,6 +7,10 @@
 /// \endcode
 #pragma once
 
+#if !defined(__cpp_exceptions) && !defined(__EXCEPTIONS)
+#error "libahm reports errors by exceptions: compile without -fno-exceptions"
+#endif
+
 #include <array>
 #include <compare>
 #include <cstddef>

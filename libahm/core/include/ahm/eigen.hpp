@@ -22,12 +22,12 @@ using RowMajorMap = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen
 
 /// Coordinates phi of all vertices, n x d. Valid while the map exists.
 inline RowMajorMap coordinates(const LogMap& map) { return {map.coordinates().data(), map.size(), map.dimension()}; }
-RowMajorMap coordinates(LogMap&&) = delete;
+RowMajorMap coordinates(const LogMap&&) = delete;
 
 /// Values of all vertices, n x width. Valid while the field exists.
 inline RowMajorMap values(const VertexField& field) {
   return {field.values.data(), static_cast<Eigen::Index>(field.status.size()), field.width};
 }
-RowMajorMap values(VertexField&&) = delete;
+RowMajorMap values(const VertexField&&) = delete;
 
 }  // namespace ahm

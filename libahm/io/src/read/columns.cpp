@@ -355,7 +355,16 @@ class ColumnReader {
   }
 
   void split_row() {
-    split(line_, delimiter_, words_);
+    split_at(line_, delimiter_);
+    // Tabs at the ends of a line are empty columns where the number of columns requires them.
+    if (columns_ > 0 && words_.size() != columns_ && (delimiter_ == ' ' || delimiter_ == '\t')) {
+      const std::string_view whole = without_comment(lines_.line(), '#');
+      if (std::ranges::count(whole, '\t') >= static_cast<std::ptrdiff_t>(columns_) - 1) split_at(whole, '\t');
+    }
+  }
+
+  void split_at(std::string_view line, char delimiter) {
+    split(line, delimiter, words_);
     const bool open_end = words_.size() > 3 && words_.back().empty();  // the line ends with a delimiter
     if (open_end && (columns_ == 0 || words_.size() == columns_ + 1)) words_.pop_back();
   }

@@ -126,13 +126,13 @@ class PointCloudSurface final : public Surface {
                                  const CloudOptions& options = {});
 
   const CsrGraph& graph() const& override { return *graph_; }
-  void graph() && = delete;
+  void graph() const&& = delete;
   const RowMap& rows() const override { return rows_; }
   std::span<const Vec3> positions() const override { return positions_; }
   Report report() const override;
   std::vector<Warning> warnings() const override;
   const CloudDetails& details() const& noexcept { return details_; }
-  void details() && = delete;
+  void details() const&& = delete;
   /// A manifold chosen from the local triangulations. The first call computes it in time O(n log n). It may leave out vertices.
   /// @throws InvalidGeometry (no triangle remains)
   FlatTriangles flat_approximation() const override;

@@ -104,7 +104,7 @@ class PolygonMeshSurface final : public Surface {
   PolygonMeshSurface& operator=(PolygonMeshSurface&&) noexcept;
 
   const CsrGraph& graph() const& override;
-  void graph() && = delete;
+  void graph() const&& = delete;
   const RowMap& rows() const override;
   std::span<const Vec3> positions() const override;
   FaceList faces() const override;

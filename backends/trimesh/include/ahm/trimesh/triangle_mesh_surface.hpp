@@ -94,7 +94,7 @@ class TriangleMeshSurface final : public Surface {
   TriangleMeshSurface& operator=(TriangleMeshSurface&&) noexcept;
 
   const CsrGraph& graph() const& override;
-  void graph() && = delete;
+  void graph() const&& = delete;
   const RowMap& rows() const override;
   std::span<const Vec3> positions() const override;
   FaceList faces() const override;

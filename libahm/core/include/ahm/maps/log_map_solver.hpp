@@ -42,7 +42,7 @@ class LogMapSolver {
   /// @param graph  must outlive the solver
   /// @throws as `HeatOperators`; InvalidArgument (accuracy, expected_maps)
   explicit LogMapSolver(const TangentGraph& graph, const HeatOptions& options = {});
-  explicit LogMapSolver(TangentGraph&&, const HeatOptions& = {}) = delete;
+  explicit LogMapSolver(const TangentGraph&&, const HeatOptions& = {}) = delete;
   ~LogMapSolver();
   LogMapSolver(LogMapSolver&&) noexcept;
   LogMapSolver& operator=(LogMapSolver&&) noexcept;

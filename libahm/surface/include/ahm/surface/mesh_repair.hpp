@@ -85,7 +85,7 @@ class RepairedSurface final : public Surface {
   RepairedSurface(std::unique_ptr<const Surface> built, std::vector<Vec3> positions, RepairedMesh mesh);
 
   const TangentGraph& graph() const& override { return built_->graph(); }
-  void graph() && = delete;
+  void graph() const&& = delete;
   const RowMap& rows() const override { return rows_; }
   std::span<const Vec3> positions() const override { return positions_; }
   FaceList faces() const override { return built_->faces(); }

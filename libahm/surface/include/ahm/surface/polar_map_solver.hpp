@@ -37,11 +37,11 @@ class PolarMapSolver {
  public:
   /// @throws ResourceExhausted
   explicit PolarMapSolver(const Surface& surface, const PolarSolverOptions& options = {});
-  explicit PolarMapSolver(Surface&&, const PolarSolverOptions& = {}) = delete;
+  explicit PolarMapSolver(const Surface&&, const PolarSolverOptions& = {}) = delete;
   /// For a graph of dimension 2 without a surface. Its fronts start at the source.
   /// @throws InvalidArgument (dimension), ResourceExhausted
   explicit PolarMapSolver(const TangentGraph& graph, const PolarSolverOptions& options = {});
-  explicit PolarMapSolver(TangentGraph&&, const PolarSolverOptions& = {}) = delete;
+  explicit PolarMapSolver(const TangentGraph&&, const PolarSolverOptions& = {}) = delete;
 
   const TangentGraph& graph() const noexcept { return *graph_; }
 

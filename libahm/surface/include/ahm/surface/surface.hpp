@@ -54,7 +54,7 @@ class Surface {
   Surface& operator=(Surface&&) noexcept;
 
   virtual const TangentGraph& graph() const& = 0;
-  void graph() && = delete;
+  void graph() const&& = delete;
   virtual const RowMap& rows() const = 0;
   /// Input position of each row, world units; empty for a surface defined by edge lengths only.
   virtual std::span<const Vec3> positions() const = 0;

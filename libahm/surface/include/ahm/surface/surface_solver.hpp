@@ -104,6 +104,7 @@ class SurfaceSolver {
   /// @param surface  must outlive the solver
   /// @throws as `LogMapSolver`, `PolarMapSolver` or `ExactGeodesics`
   explicit SurfaceSolver(const Surface& surface, const MethodOptions& options = {});
+  explicit SurfaceSolver(const Surface&&, const MethodOptions& = {}) = delete;
   /// Shares the surface.
   explicit SurfaceSolver(std::shared_ptr<const Surface> surface, const MethodOptions& options = {});
   // NOLINTBEGIN(bugprone-forwarding-reference-overload,bugprone-move-forwarding-reference): rvalues only

@@ -59,7 +59,7 @@ class ExactGeodesics {
   /// Time and memory linear in the number of faces.
   /// @throws as `Surface::flat_triangles`
   explicit ExactGeodesics(const Surface& surface);
-  explicit ExactGeodesics(Surface&&) = delete;
+  explicit ExactGeodesics(const Surface&&) = delete;
   /// Uses other triangles than the faces: `Surface::flat_approximation`. The maps are exact on these triangles.
   ExactGeodesics(const Surface& surface, FlatTriangles triangles);
 
