@@ -127,48 +127,54 @@ Vec3 axis_across(const Vec3& n) {
   return 1 / norm(across) * across;
 }
 
-/// A face at a vertex of the input mesh, in space.
-struct SpatialFace {
-  Vec3 first, second;  ///< sides from the vertex, counter-clockwise
-  Vec3 normal;         ///< cross product of the sides
-  double area;         ///< length of `normal`, twice the area of the face
-  double angle;        ///< angle of the face at the vertex
-};
-
-/// The faces around a vertex, counter-clockwise.
+/// The faces around a vertex of the input mesh in space, counter-clockwise. Face k lies between side k and the next one.
 struct SpatialFan {
-  std::vector<SpatialFace> faces;
+  struct Face {
+    Vec3 normal;   ///< cross product of its sides
+    double area;   ///< length of `normal`, twice the area of the face
+    double angle;  ///< angle of the face at the vertex
+  };
+
+  std::vector<Vec3> sides;  ///< from the vertex
+  std::vector<Face> faces;
   bool is_closed = false;
 
-  void collect_faces(const TriangleMesh& mesh, const HalfEdges& edges, Index v) {
+  void collect(const TriangleMesh& mesh, const HalfEdges& edges, Index v) {
+    sides.clear();
     faces.clear();
-    const Corner start = reference_corner(mesh, edges, v);
     const Vec3& center = mesh.position(Vertex(v));
-    for (Corner c = start;;) {
-      const Vec3 a = mesh.position(Vertex(edges.head(c.half))) - center,
-                 b = mesh.position(Vertex(edges.tail[previous(c.half)])) - center;
-      add(c.forward ? a : b, c.forward ? b : a);
-      c = edges.turn_left(c);
-      is_closed = c.half >= 0;
-      if (!is_closed || c == start) return;
+    const auto side = [&](Corner c, bool is_right) {
+      const Index end = is_right == c.forward ? edges.head(c.half) : edges.tail[previous(c.half)];
+      return mesh.position(Vertex(end)) - center;
+    };
+    const Corner start = reference_corner(mesh, edges, v);
+    Corner last;
+    for (Corner c = start; c.half >= 0 && (sides.empty() || c != start); c = edges.turn_left(c)) {
+      sides.push_back(side(c, true));
+      last = c;
+    }
+    is_closed = edges.turn_left(last).half >= 0;
+    if (!is_closed) sides.push_back(side(last, false));
+    for (std::size_t k = 0; k < sides.size() - (is_closed ? 0 : 1); ++k) {
+      const Vec3 normal = cross(sides[k], next(k));
+      const double area = norm(normal);
+      faces.push_back({normal, area, std::atan2(area, dot(sides[k], next(k)))});
     }
   }
 
- private:
-  void add(const Vec3& a, const Vec3& b) {
-    const Vec3 normal = cross(a, b);
-    const double area = norm(normal);
-    faces.push_back({a, b, normal, area, std::atan2(area, dot(a, b))});
-  }
+  /// The side after side k.
+  const Vec3& next(std::size_t k) const { return sides[k + 1 < sides.size() ? k + 1 : 0]; }
 };
 
 /// The mean of the face normals, weighted by angle, over the faces with reliable normals. If there are none, over all faces.
 /// Zero if the normals cancel.
 Vec3 mean_normal(const SpatialFan& fan, double rounding) {
   Vec3 sum{0, 0, 0}, of_all{0, 0, 0};
-  for (const SpatialFace& face : fan.faces) {
+  for (std::size_t k = 0; k < fan.faces.size(); ++k) {
+    const SpatialFan::Face& face = fan.faces[k];
     if (!(face.area > 0)) continue;
-    const double longest = std::max({norm(face.first), norm(face.second), norm(face.second - face.first)});
+    const Vec3 &a = fan.sides[k], &b = fan.next(k), across = b - a;
+    const double longest = std::sqrt(std::max({dot(a, a), dot(b, b), dot(across, across)}));
     const Vec3 weighted = face.angle / face.area * face.normal;
     of_all = of_all + weighted;
     if (rounding * longest <= certain_normal * face.area) sum = sum + weighted;
@@ -183,9 +189,9 @@ Frame frame_in_space(const TriangleMesh& mesh, const SpatialFan& fan, Index v) {
   const Vec3 sum = mean_normal(fan, mesh.rounding(Vertex(v)));
   Vec3 reference{0, 0, 0};
   double angle_sum = 0;
-  for (const SpatialFace& face : fan.faces) {
-    if (angle_sum == 0) reference = face.first;
-    angle_sum += face.angle;
+  for (std::size_t k = 0; k < fan.faces.size(); ++k) {
+    if (angle_sum == 0) reference = fan.sides[k];
+    angle_sum += fan.faces[k].angle;
   }
   // If the normals cancel, or the reference edge is perpendicular to the plane, any axes will do.
   const double length = norm(sum), reach = norm(reference);
@@ -197,17 +203,14 @@ Frame frame_in_space(const TriangleMesh& mesh, const SpatialFan& fan, Index v) {
   const Vec3 y = cross(normal, x);
 
   const double scale = fan.is_closed && angle_sum > 0 ? 2 * pi / angle_sum : 1.0;
-  double angle = 0;
+  double angle = 0, before = fan.is_closed ? fan.faces.back().angle : 0;
   Vec2 fit{};
-  auto add = [&](const Vec3& side, double weight) {
-    const Vec2 p{dot(side, x), dot(side, y)};
-    if (norm(p) > 0) fit = fit + weight / norm(p) * product(p, unit(-angle));
-  };
-  for (const SpatialFace& face : fan.faces) {
-    const double corner = scale * face.angle;
-    add(face.first, corner);
-    angle += corner;
-    add(face.second, corner);
+  for (std::size_t k = 0; k < fan.sides.size(); ++k) {
+    const double after = k < fan.faces.size() ? fan.faces[k].angle : 0;
+    const Vec2 p{dot(fan.sides[k], x), dot(fan.sides[k], y)};
+    if (const double size = norm(p); size > 0) fit = fit + (before + after) / size * product(p, unit(-scale * angle));
+    angle += after;
+    before = after;
   }
   fit = norm(fit) > 1e-12 ? normalized(fit) : Vec2{1, 0};
   const Vec3 fitted = fit[0] * x + fit[1] * y;
@@ -262,7 +265,7 @@ std::vector<Frame> frames_in_space(const TriangleMesh& mesh, unsigned threads) {
   detail::parallel_chunks(static_cast<Offset>(frames.size()), 1 << 12, threads, [&](Offset begin, Offset end) {
     SpatialFan fan;
     for (auto v = static_cast<Index>(begin); v < end; ++v) {
-      fan.collect_faces(mesh, edges, v);
+      fan.collect(mesh, edges, v);
       frames[v] = frame_in_space(mesh, fan, v);
     }
   });

@@ -163,7 +163,6 @@ void PolyhedralSurface::set_fans(const HalfEdges& edges, std::span<const Half> c
     do {
       angle_sum_[v] += angle(at.half);
       parts.join(v, edges.head(at.half));
-      parts.join(v, edges.tail[previous(at.half)]);
       at = turn_left(at);
     } while (++met < corners_at[v] && at.half >= 0 && at != corner_[v]);
     if (met != corners_at[v])
