@@ -11,7 +11,9 @@
 /// \endcode
 #pragma once
 
+#include <complex>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -89,6 +91,11 @@ double mean(std::span<const double> values);
 
 /// Lengths of n vectors in the plane.
 std::vector<double> lengths(std::span<const double> coordinates);
+
+/// Lengths of the differences between vectors and the exact ones, relative to the lengths of the exact ones, which must not be 0.
+/// The axes of the maps may differ by a rotation or a reflection; the one that fits best near the source is removed.
+std::vector<double> relative_errors(std::span<const std::complex<double>> found,
+                                    std::span<const std::complex<double>> exact);
 
 /// Least-squares slope of log y over log x: the order of convergence if x is h and y the error.
 double fitted_order(std::span<const double> x, std::span<const double> y);

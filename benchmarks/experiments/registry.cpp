@@ -29,6 +29,7 @@ Table methods_compared(const Settings&);
 Table polygons(const Settings&);
 Table radial(const Settings&);
 Table runtime(const Settings&);
+Table smooth_surfaces(const Settings&);
 Table stages_of_a_map(const Settings&);
 Table tessellations(const Settings&);
 Table times(const Settings&);
@@ -54,6 +55,9 @@ std::span<const Experiment> experiments() {
       Experiment{"convergence", "Fig. 24", "Convergence on the sphere",
                  "Both variants converge linearly in L2 and in L-infinity; the adaptive one is slightly more accurate.",
                  convergence},
+      Experiment{"smooth_surfaces", "after Fig. 24", "Convergence to smooth surfaces",
+                 "Both variants converge linearly; other surfaces than the sphere are not in the paper.",
+                 smooth_surfaces},
       Experiment{
           "variants", "Fig. 8", "Localized or adaptive",
           "Within the injectivity radius the localized and the adaptive variant nearly agree; they differ at the cut "
