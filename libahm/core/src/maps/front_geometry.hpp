@@ -73,8 +73,9 @@ struct DirectionAcross {
 /// @param share    where the ray crosses the side: 0 at a, 1 at b
 /// @param towards  a point on the ray, in the layout of the triangle
 /// @param side     1: a, b, c counterclockwise; -1: clockwise
+/// @param bend     `bend_along` of the side
 inline DirectionAcross direction_across(const Across& point, double share, const Vec2& towards, double ab,
-                                        const Vec2& to_a, const Vec2& to_b, double side) {
+                                        const Vec2& to_a, const Vec2& to_b, double side, double bend) {
   // If the directions differ by more than this many times the angle that the side subtends at the point, the rays to a and b arrive along
   // two different paths, for example around a tube, and no ray passes between them.
   constexpr double two_ways = 6;
@@ -86,8 +87,14 @@ inline DirectionAcross direction_across(const Across& point, double share, const
   const double difference = length(Vec2{by_a[0] - by_b[0], by_a[1] - by_b[1]});
   if (difference > two_ways * ab / point.length()) return {share < 0.5 ? by_a : by_b, difference};
   const Vec2 sum{(1 - share) * by_a[0] + share * by_b[0], (1 - share) * by_a[1] + share * by_b[1]};
-  const double size = length(sum);
-  return {size > 0 ? Vec2{sum[0] / size, sum[1] / size} : by_a, difference};
+  // The weights are exact to first order. Along a side that is not perpendicular to the ray, the angle at the source grows unevenly: by
+  // sin(alpha) / J per length, with the angle alpha between ray and side, and J' / J = k. The second order follows from alpha' = -k sin(alpha).
+  const double ray = length(c), excess = side * cross(by_a, by_b), circle = cross(a, b) / (length(a) * length(b));
+  const double second_order = share * (1 - share) * c[0] / ray * (excess * ab / ray - (circle + excess) * bend);
+  const double turn = side * second_order;
+  const Vec2 turned{sum[0] - turn * sum[1], sum[1] + turn * sum[0]};
+  const double size = length(turned);
+  return {size > 0 ? Vec2{turned[0] / size, turned[1] / size} : by_a, difference};
 }
 
 /// Solves the factored eikonal equation |grad(T0 u)| = 1 [FLZ09] at a vertex; T0 is the straight-line distance:

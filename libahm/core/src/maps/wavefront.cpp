@@ -454,12 +454,13 @@ void Wavefront::Impl::spread(Index from, Index point, double distance) {
       if (found.distance <= distance && is_beyond(distance, other.distance, base_length, cx, cy, limit)) return;
       const Across across = across_side(distance, other.distance, base_length, cx, cy, limit, missed_);
       if (!across.found) return;
-      double length = across.length(), bent_by = 0, crossing = across.share;
+      double length = across.length(), bent_by = 0, bend = 0, crossing = across.share;
       if (is_curved_) {
         const auto between = [&](double a, double b) { return (1 - across.share) * a + across.share * b; };
         const double height = cy + across.depth, to_side = across.depth / height * length;
         const double at_side = between(focusing, other.focusing);
-        const double bend = bend_along(base_length, at_side, to_side), squared_sine = height * height / across.squared;
+        const double squared_sine = height * height / across.squared;
+        bend = bend_along(base_length, at_side, to_side);
         const double bent = length + curvature_correction(bend, base_length, across.share, squared_sine);
         if (!(bent <= found.distance * (1 + same_length))) return;
         const double curved = between(curvature_here, curvature(corners[base].neighbor));
@@ -474,7 +475,7 @@ void Wavefront::Impl::spread(Index from, Index point, double distance) {
       if (!directions_) return;
       const Vec2 towards = crossing == across.share ? Vec2{cx, cy} : Vec2{crossing * base_length, 0};
       const auto [direction, difference] = direction_across(across, crossing, towards, base_length, own.direction,
-                                                            other.path.direction, own.mirrored ? -side : side);
+                                                            other.path.direction, own.mirrored ? -side : side, bend);
       found.path.direction = direction;
       found.path.variance =
           static_cast<float>((1 - crossing) * own.variance + crossing * other.path.variance + difference * difference);
