@@ -281,9 +281,19 @@ void Wavefront::Impl::restart(std::span<const Seed> seeds) {
   };
   std::vector<Start> starts;
   starts.reserve(seeds.size());
+  struct Neighboring {
+    Index vertex;
+    Entry entry;
+    Path path;
+  };
+  std::vector<Neighboring> beside_point;  // a seed at its point has no direction that its neighbors could take over
   for (const Seed& seed : seeds) {
     const Entry* const found = find(seed.vertex.index, seed.point);
     starts.push_back(found ? Start{found->focusing, paths_[number(*found)].mirrored} : Start{});
+    if (!std::isnan(seed.direction[0])) continue;
+    for (const Corner& corner : one_ring(seed.vertex.index))
+      if (const Entry* const next = find(corner.neighbor, seed.point))
+        beside_point.push_back({corner.neighbor, *next, paths_[number(*next)]});
   }
   std::ranges::fill(first_, none);
   entries_.clear();
@@ -307,6 +317,8 @@ void Wavefront::Impl::restart(std::span<const Seed> seeds) {
     if (std::ranges::any_of(one_ring(vertex), is_free))
       queue_.push({entries_[first_[vertex]].distance, vertex, seed.point});
   }
+  for (const auto& [vertex, entry, path] : beside_point)
+    if (first_[vertex] == none) offer(vertex, entry.point, entry.distance, 0, {}, path, entry.focusing);
 }
 
 void Wavefront::Impl::run(double radius, const std::stop_token& stop) {
