@@ -156,6 +156,17 @@ std::vector<double> lengths(std::span<const double> coordinates) {
   return result;
 }
 
+std::vector<double> vector_errors(const Surface& surface, const LogMap& exact, const LogMap& map) {
+  std::vector<double> errors;
+  for (Index i = 0; i < surface.size(); ++i) {
+    const Vertex v(i);
+    if (map.status(v) != Status::ok || !(exact.distance(v) > 2 * surface.mean_edge())) continue;
+    const auto a = exact.coordinates(v), b = map.coordinates(v);
+    errors.push_back(std::hypot(a[0] - b[0], a[1] - b[1]) / exact.distance(v));
+  }
+  return errors;
+}
+
 std::vector<double> relative_errors(std::span<const std::complex<double>> found,
                                     std::span<const std::complex<double>> exact) {
   constexpr double near = 0.3;  // share of the vectors by which the axes are fitted

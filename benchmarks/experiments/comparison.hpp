@@ -17,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "ahm/maps/log_map.hpp"
 #include "ahm/surface/exact/polyhedral_surface.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "experiments/surfaces.hpp"
@@ -91,6 +92,9 @@ double mean(std::span<const double> values);
 
 /// Lengths of n vectors in the plane.
 std::vector<double> lengths(std::span<const double> coordinates);
+
+/// Errors of the vectors of a map relative to the distances of an exact map with the same axes, at vertices beyond two mean edges.
+std::vector<double> vector_errors(const Surface& surface, const LogMap& exact, const LogMap& map);
 
 /// Lengths of the differences between vectors and the exact ones, relative to the lengths of the exact ones, which must not be 0.
 /// The axes of the maps may differ by a rotation or a reflection; the one that fits best near the source is removed.

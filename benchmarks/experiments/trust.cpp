@@ -160,7 +160,9 @@ void measure(const GroundTruth& ground, const ComparedSurface& view, Table& tabl
 void measure_points(const GroundTruth& ground, std::string name, std::span<const Vec3> points,
                     const std::vector<exact::MeshPoint>& on_ground, Table& table) {
   const auto cloud = pointcloud::PointCloudSurface::build(points);
-  if (cloud.graph().size() != std::ssize(points)) return;
+  if (cloud.graph().size() != std::ssize(points))
+    return fmt::print(stderr, "left out: {} as {}: {} of {} points are vertices of the graph\n", ground.name, name,
+                      cloud.graph().size(), points.size());
   measure(ground, {std::move(name), cloud, on_ground, [](Index k) { return Row(k); }}, table);
 }
 
