@@ -59,7 +59,7 @@ void measure(const NamedMesh& mesh, unsigned threads, Table& table) {
     std::optional<AnySolver> solver;
     std::vector<double> vectors;
     const double prepare = min_seconds([&] { solver.emplace(method, surface->mesh(), threads); });
-    const double further = min_seconds([&] { solver->log_map(sources.front()); });
+    const double additional = min_seconds([&] { solver->log_map(sources.front()); });
     for (std::size_t s = 0; s < sources.size(); ++s) {
       const LogMap map = solver->log_map(sources[s]);
       const std::vector<double> errors = vector_errors(*surface, exact[s], map);
@@ -70,7 +70,7 @@ void measure(const NamedMesh& mesh, unsigned threads, Table& table) {
       const Surface own(mesh.name, mesh, options);
       AnySolver(method, own.mesh(), threads).log_map(sources.front());
     });
-    table.add({mesh.name, surface->size(), std::string(to_string(method)), build, prepare + further, further,
+    table.add({mesh.name, surface->size(), std::string(to_string(method)), build, prepare + additional, additional,
                known(memory), quantile(vectors, 0.5), quantile(vectors, 0.95)});
   }
 }
@@ -78,7 +78,7 @@ void measure(const NamedMesh& mesh, unsigned threads, Table& table) {
 }  // namespace
 
 Table costs(const Settings& settings) {
-  Table table({"mesh", "vertices", "method", "surface s", "first map s", "further map s", "added MB", "vector 50%",
+  Table table({"mesh", "vertices", "method", "surface s", "first map s", "additional map s", "added MB", "vector 50%",
                "vector 95%"});
   const auto size = [&](Index n) { return settings.toy ? 640 : n; };
   for (const NamedMesh& mesh :
