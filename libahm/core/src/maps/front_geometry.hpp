@@ -166,9 +166,10 @@ inline double focusing_after(double focusing, double from, double to, double cur
 }
 
 /// Change of ln(J / d), where J is the width of the front per angle at the source, J' / J = k; the integral of -m/d^2.
-inline double widening_between(double from, double focusing, double to, double focusing_there) {
-  const auto slope = [](double m, double d) { return d > 0 ? m / d / d : 0; };
-  return 0.5 * (slope(focusing, from) + slope(focusing_there, to)) * (from - to);
+inline float widening_between(double from, double focusing, double to, double focusing_there) {
+  const double here = from > 0 ? focusing / (from * from) : 0, there = to > 0 ? focusing_there / (to * to) : 0;
+  const double change = 0.5 * (here + there) * (from - to);
+  return std::isfinite(change) ? static_cast<float>(change) : 0;  // the squares of lengths may underflow
 }
 
 /// m/d^2 times the length of a side: the difference between the curvature of a circle and that of the front.

@@ -453,9 +453,8 @@ void Wavefront::Impl::spread(Index from, Index point, double distance) {
     known.focusing = known.is_new ? focusing_along(corners[k], along) : entry->focusing;
     if (directions_) {
       known.path = known.is_new ? Path{own.direction, {}, {from, from}, 0, own.variance} : path_of(entry);
-      if (known.is_new)
-        known.path.widening =
-            static_cast<float>(own.widening + widening_between(distance, focusing, along, known.focusing));
+      if (known.is_new && is_curved_)
+        known.path.widening = own.widening + widening_between(distance, focusing, along, known.focusing);
     }
     longest = std::max(longest, corners[k].length);
   }
@@ -474,7 +473,8 @@ void Wavefront::Impl::spread(Index from, Index point, double distance) {
       if (found.distance <= distance && is_beyond(distance, other.distance, base_length, cx, cy, limit)) return;
       const Across across = across_side(distance, other.distance, base_length, cx, cy, limit, missed_);
       if (!across.found) return;
-      double length = across.length(), bent_by = 0, bend = 0, crossing = across.share, wider = 0;
+      double length = across.length(), bent_by = 0, bend = 0, crossing = across.share;
+      float wider = 0;
       if (is_curved_) {
         const auto between = [&](double a, double b) { return (1 - across.share) * a + across.share * b; };
         const double height = cy + across.depth, to_side = across.depth / height * length;
@@ -485,7 +485,7 @@ void Wavefront::Impl::spread(Index from, Index point, double distance) {
         if (!(bent <= found.distance * (1 + same_length))) return;
         const double curved = between(curvature_here, curvature(corners[base].neighbor));
         bent_by = focusing_after(at_side, to_side, length, 0.5 * (curved + curvature(corners[target].neighbor)));
-        wider = widening_between(to_side, at_side, length, bent_by);
+        if (directions_) wider = widening_between(to_side, at_side, length, bent_by);
         crossing = bent_crossing(across.share, bend, base_length, length - to_side);
         length = bent;
       }
@@ -495,9 +495,9 @@ void Wavefront::Impl::spread(Index from, Index point, double distance) {
       found.is_new = true;
       if (!directions_) return;
       const Vec2 towards = crossing == across.share ? Vec2{cx, cy} : Vec2{crossing * base_length, 0};
-      const auto [direction, difference] = direction_across(
-          across, crossing, towards, base_length, own.direction, other.path.direction, own.mirrored ? -side : side,
-          bend, static_cast<double>(other.path.widening) - static_cast<double>(own.widening));
+      const auto [direction, difference] =
+          direction_across(across, crossing, towards, base_length, own.direction, other.path.direction,
+                           own.mirrored ? -side : side, bend, other.path.widening - own.widening);
       found.path.widening = static_cast<float>((1 - crossing) * own.widening + crossing * other.path.widening + wider);
       found.path.direction = direction;
       found.path.variance =
