@@ -77,6 +77,9 @@ TEST(SmoothSurfacesExperiment, LengthsOfPolarMapsAreOfSecondOrder) {
   const Table& table = toy("smooth_surfaces");
   EXPECT_GE(table.where("method", "polar").smallest("order |vector|"), 1.8);
   EXPECT_LE(table.where("method", "polar").largest("vector 95%"), table.where("method", "heat").largest("vector 95%"));
+  // The front uses the curvature of the smooth surface.
+  EXPECT_LT(table.where("method", "polar without windows").largest("vector 95%"),
+            table.where("method", "exact").largest("vector 95%") / 2);
 }
 
 TEST(CostsExperiment, ExactMapsHaveNoErrorAndMemoryIsMeasured) {
