@@ -156,6 +156,37 @@ std::vector<double> lengths(std::span<const double> coordinates) {
   return result;
 }
 
+std::vector<double> vector_errors(const Surface& surface, const LogMap& exact, const LogMap& map) {
+  std::vector<double> errors;
+  for (Index i = 0; i < surface.size(); ++i) {
+    const Vertex v(i);
+    if (map.status(v) != Status::ok || !(exact.distance(v) > 2 * surface.mean_edge())) continue;
+    const auto a = exact.coordinates(v), b = map.coordinates(v);
+    errors.push_back(std::hypot(a[0] - b[0], a[1] - b[1]) / exact.distance(v));
+  }
+  return errors;
+}
+
+std::vector<double> relative_errors(std::span<const std::complex<double>> found,
+                                    std::span<const std::complex<double>> exact) {
+  constexpr double near = 0.3;  // share of the vectors by which the axes are fitted
+  std::vector<double> result;
+  for (const auto& z : exact) result.push_back(std::abs(z));
+  const double farthest = result.empty() ? 0 : quantile(result, near);
+  std::complex<double> turn = 0, mirrored_turn = 0;
+  for (std::size_t k = 0; k < exact.size(); ++k) {
+    if (!(result[k] <= farthest)) continue;
+    turn += found[k] * std::conj(exact[k]);
+    mirrored_turn += found[k] * exact[k];
+  }
+  const bool is_mirrored = std::abs(mirrored_turn) > std::abs(turn);
+  if (is_mirrored) turn = mirrored_turn;
+  turn /= std::abs(turn);
+  for (std::size_t k = 0; k < exact.size(); ++k)
+    result[k] = std::abs(found[k] - turn * (is_mirrored ? std::conj(exact[k]) : exact[k])) / result[k];
+  return result;
+}
+
 double fitted_order(std::span<const double> x, std::span<const double> y) {
   const auto n = static_cast<double>(x.size());
   double sx = 0, sy = 0, sxx = 0, sxy = 0;

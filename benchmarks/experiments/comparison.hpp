@@ -11,10 +11,13 @@
 /// \endcode
 #pragma once
 
+#include <complex>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "ahm/maps/log_map.hpp"
 #include "ahm/surface/exact/polyhedral_surface.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "experiments/surfaces.hpp"
@@ -89,6 +92,14 @@ double mean(std::span<const double> values);
 
 /// Lengths of n vectors in the plane.
 std::vector<double> lengths(std::span<const double> coordinates);
+
+/// Errors of the vectors of a map relative to the distances of an exact map with the same axes, at vertices beyond two mean edges.
+std::vector<double> vector_errors(const Surface& surface, const LogMap& exact, const LogMap& map);
+
+/// Lengths of the differences between vectors and the exact ones, relative to the lengths of the exact ones, which must not be 0.
+/// The axes of the maps may differ by a rotation or a reflection; the one that fits best near the source is removed.
+std::vector<double> relative_errors(std::span<const std::complex<double>> found,
+                                    std::span<const std::complex<double>> exact);
 
 /// Least-squares slope of log y over log x: the order of convergence if x is h and y the error.
 double fitted_order(std::span<const double> x, std::span<const double> y);

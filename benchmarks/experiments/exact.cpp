@@ -26,18 +26,6 @@ double cpu_seconds(const Work& work) {
   return static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC;
 }
 
-/// Relative errors of the vectors of heat maps, beyond two edges from the source. Both maps have the same axes.
-std::vector<double> vector_errors(const Surface& surface, const LogMap& exact, const LogMap& heat) {
-  std::vector<double> errors;
-  for (Index i = 0; i < surface.size(); ++i) {
-    const Vertex v(i);
-    if (heat.status(v) != Status::ok || !(exact.distance(v) > 2 * surface.mean_edge())) continue;
-    const auto a = exact.coordinates(v), b = heat.coordinates(v);
-    errors.push_back(std::hypot(a[0] - b[0], a[1] - b[1]) / exact.distance(v));
-  }
-  return errors;
-}
-
 struct HeatRow {
   double first = 0, additional = 0;
   std::vector<double> errors;

@@ -168,6 +168,21 @@ def convergence(rows):
     return legend(figure, axes)
 
 
+def smooth_surfaces(rows):
+    return by_shape(rows, "h", "vector 95%", "method", column="surface", logx=True, logy=True,
+                    ylabel="vector error at 95 %, of the distance")
+
+
+def costs(rows):
+    figure, axes = panels(3)
+    for axis, column in zip(axes, ("first map s", "additional map s", "added MB")):
+        for place, method in enumerate(values(rows, "method")):
+            pairs = numbers(only(rows, method=method), "vertices", column)
+            axis.plot(*zip(*pairs), label=method, **{**look(method, place), "linestyle": "none"})
+        axis.set(xlabel="vertices", ylabel=column, xscale="log", yscale="log")
+    return legend(figure, axes)
+
+
 def variants(rows):
     figure, axes = panels(2, width=4.4)
     lines(axes[0], rows, "distance / longest", "median difference", "shape", logy=True, title="all vertices")

@@ -10,6 +10,7 @@ Table boundary(const Settings&);
 Table cloud_scaling(const Settings&);
 Table clouds(const Settings&);
 Table convergence(const Settings&);
+Table costs(const Settings&);
 Table cut_locus(const Settings&);
 Table delaunay(const Settings&);
 Table dem(const Settings&);
@@ -29,6 +30,7 @@ Table methods_compared(const Settings&);
 Table polygons(const Settings&);
 Table radial(const Settings&);
 Table runtime(const Settings&);
+Table smooth_surfaces(const Settings&);
 Table stages_of_a_map(const Settings&);
 Table tessellations(const Settings&);
 Table times(const Settings&);
@@ -54,6 +56,9 @@ std::span<const Experiment> experiments() {
       Experiment{"convergence", "Fig. 24", "Convergence on the sphere",
                  "Both variants converge linearly in L2 and in L-infinity; the adaptive one is slightly more accurate.",
                  convergence},
+      Experiment{"smooth_surfaces", "after Fig. 24", "Convergence to smooth surfaces",
+                 "Both variants converge linearly; other surfaces than the sphere are not in the paper.",
+                 smooth_surfaces},
       Experiment{
           "variants", "Fig. 8", "Localized or adaptive",
           "Within the injectivity radius the localized and the adaptive variant nearly agree; they differ at the cut "
@@ -86,6 +91,8 @@ std::span<const Experiment> experiments() {
                  "On coarse meshes an exact map costs no more than the first map by heat; vectors by heat have errors "
                  "of a few percent.",
                  exact_compared},
+      Experiment{"costs", "none", "Time, memory and accuracy of polar, heat and exact maps", "Not in the paper.",
+                 costs},
       Experiment{
           "runtime", "Fig. 22", "Run time",
           "AHM_l is 27 % slower than VHM_log, AHM_a 70 %; additional maps are 7 to 30 (AHM_l) and 3 to 10 (AHM_a) "

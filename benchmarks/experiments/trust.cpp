@@ -70,7 +70,6 @@ MapErrors compare(const GroundTruth& ground, const exact::ExactMap& truth, const
     if (truth.target_status(k) == Status::ok) farthest = std::max(farthest, ground.unit * truth.target_distance(k));
   const double near = std::max(2 * ground.mean_edge, 0.03 * farthest);
   std::vector<Complex> exact, ours;
-  std::vector<double> away;
   MapErrors found;
   for (Index k = 0; k < view.size(); ++k) {
     const Vertex v = view.vertex(k);
@@ -79,25 +78,10 @@ MapErrors compare(const GroundTruth& ground, const exact::ExactMap& truth, const
     const Vec2 vector = truth.target_coordinates(k);
     exact.emplace_back(ground.unit * vector[0], ground.unit * vector[1]);
     ours.emplace_back(map.coordinates(v)[0], map.coordinates(v)[1]);
-    away.push_back(d);
     found.distance_error.push_back(std::abs(map.distance(v) - d) / d);
     found.quality.push_back(quality[v.index]);
   }
-  // The axes of the maps differ by a rotation; on points also by a reflection, perhaps. Both are fitted near the source.
-  const double third = away.empty() ? 0 : quantile(away, 0.3);
-  Complex turn = 0, turn_back = 0;
-  for (std::size_t k = 0; k < exact.size(); ++k) {
-    if (!(away[k] < third)) continue;
-    turn += ours[k] * std::conj(exact[k]);
-    turn_back += ours[k] * exact[k];
-  }
-  if (std::abs(turn_back) > std::abs(turn)) {
-    turn = turn_back;
-    for (Complex& z : exact) z = std::conj(z);
-  }
-  turn /= std::abs(turn);
-  for (std::size_t k = 0; k < exact.size(); ++k)
-    found.vector_error.push_back(std::abs(ours[k] - turn * exact[k]) / away[k]);
+  found.vector_error = relative_errors(ours, exact);
   return found;
 }
 
@@ -176,7 +160,9 @@ void measure(const GroundTruth& ground, const ComparedSurface& view, Table& tabl
 void measure_points(const GroundTruth& ground, std::string name, std::span<const Vec3> points,
                     const std::vector<exact::MeshPoint>& on_ground, Table& table) {
   const auto cloud = pointcloud::PointCloudSurface::build(points);
-  if (cloud.graph().size() != std::ssize(points)) return;
+  if (cloud.graph().size() != std::ssize(points))
+    return fmt::print(stderr, "left out: {} as {}: {} of {} points are vertices of the graph\n", ground.name, name,
+                      cloud.graph().size(), points.size());
   measure(ground, {std::move(name), cloud, on_ground, [](Index k) { return Row(k); }}, table);
 }
 

@@ -156,7 +156,7 @@ class Center(NamedTuple):
     #: Mean: root mean square of the weighted distances. Median: weighted mean of the distances. World units.
     spread: float
     maps: int  #: number of log maps computed by the search
-    converged: bool  #: False if the search stopped at `max_maps`
+    converged: bool  #: whether the center is within an edge of the nearest vertex; False also after `max_maps`
     #: Distance from a minimum, measured with one more log map, from the center itself. Mean: length of the weighted mean of the
     #: points' coordinates, world units. Median: the same for their unit vectors, minus the weight share of points at the center.
     #: On clouds and graphs, the map from a point near a vertex is the shifted map of the vertex. There the residual shows only

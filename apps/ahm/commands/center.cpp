@@ -84,8 +84,6 @@ void report(const CenterCommandOptions& options, const Input& input, const Cente
 }
 
 void comment_on(const Center& center, const TangentGraph& graph, Journal& journal) {
-  if (!center.converged)
-    journal.add_warning(fmt::format("the center is still moving, maps used: {}; choose another --start", center.maps));
   const double away = std::hypot(center.offset[0], center.offset[1]);
   const double edge = graph.mean_edge_length() * graph.length_unit();
   if (away > 3 * edge)
@@ -93,6 +91,8 @@ void comment_on(const Center& center, const TangentGraph& graph, Journal& journa
         "the center is {:.4g} ({:.0f} mean edge lengths) from the nearest vertex: it lies in a hole, or the points are "
         "too far apart on this surface to have one center; try another --start",
         away, away / edge));
+  else if (!center.converged)
+    journal.add_warning(fmt::format("the search did not converge, maps used: {}; choose another --start", center.maps));
 }
 
 void run(const CenterCommandOptions& options) {

@@ -60,8 +60,9 @@ void print_estimates(const GraphSize& size, const std::string& backend, Strategy
   nlohmann::ordered_json j{{"program", "ahm logmap --estimate"},
                            {"n", size.vertices},
                            {"backend", backend},
+                           {"method", to_string(Method::heat)},
                            {"strategy", to_string(chosen)}};
-  std::string text = fmt::format("vertices: {}, backend {}\n", size.vertices, backend);
+  std::string text = fmt::format("vertices: {}, backend {}, method heat\n", size.vertices, backend);
   for (Strategy strategy : {Strategy::global, Strategy::march}) {
     const EstimateText one = of_strategy(strategy);
     j[std::string(to_string(strategy))] = one.json;
@@ -71,6 +72,8 @@ void print_estimates(const GraphSize& size, const std::string& backend, Strategy
   j["machine_bytes"] = memory;
   text += fmt::format("memory available on this machine: {}\n", bytes_as_text(static_cast<std::int64_t>(memory)));
   write_json(json, j);
+  text +=
+      "polar maps, the default on meshes and on clouds with little noise, are not estimated; they need no factors\n";
   if (json != "-") print(text);
 }
 

@@ -482,7 +482,7 @@ void offer(CLI::App& app, LogmapCommand& command) {
              "Output mesh with u,v at the corners of its faces, see below");
   auto* estimate = app.add_flag(
       "--estimate", o.estimate,
-      "Print the estimated time and memory of a map and exit. Without --source the estimate uses only the\n"
+      "Print the estimated time and memory of a map by heat and exit. Without --source the estimate uses only the\n"
       "size of INPUT (even sampling, no radius). With --source it builds the graph and is accurate to a third.\n"
       "On clouds, how far a march continues beyond --radius is unknown; the estimate without radius is a bound");
   app.callback([=, &app, &command, &o] {

@@ -278,7 +278,7 @@ void comment_on_positions(const Input& input, std::span<const SourceSpec> specs,
   const bool may_be_rows =
       std::ranges::all_of(farthest->position, [](double x) { return x >= 0 && x == std::floor(x); });
   journal.add_warning(
-      fmt::format("{} {}: {:.4g} ({:.0f} mean edge lengths) off the surface{}; the nearest point is used{}", option,
+      fmt::format("{} {}: {:.4g} ({:.3g} mean edge lengths) off the surface{}; the nearest point is used{}", option,
                   to_string(*farthest), away, away / edge,
                   count > 1 ? fmt::format(", other positions that are too far: {}", count - 1) : "",
                   may_be_rows ? "; if these are rows, separate them by blanks" : ""));

@@ -77,9 +77,8 @@ constexpr Sentence sentences[] = {
     {"normals_flipped", "{0:.0f} input [normal was|normals were] flipped to agree with the majority of normals around"},
     {"k_reduced", "k = {0:.0f} was reduced to {1:.0f}: the cloud has only {2:.0f} distinct [point|points]"},
     {"smoothed",
-     "the noise across the surface is {1:.4g}, and {0:.0f} [point was|points were] smoothed before the map; --smooth "
-     "off "
-     "prevents this"},
+     "{0:.0f} [point was|points were] smoothed before the map (noise across the largest part of the surface: {1:.4g}); "
+     "--smooth off prevents this"},
     {"near_duplicates",
      "{0:.0f} [point was|points were] merged with another point that is much closer than the spacing"},
     {"coarse_coordinates",

@@ -32,7 +32,7 @@ constexpr Advice advices[] = {
     {"ill_conditioned", join_points},
     {"twisted_faces", "use --discretization polygons"},
     {"collinear_faces", "remove them, or use --method heat"},
-    {"no_flat_triangles", "use --method heat"},
+    {"no_flat_triangles", "use --method polar or --method heat"},
     {"windows_without_end", "repair the mesh, or use --method heat"},
     {"windows_lost", "repair the thin triangles there, or use --method polar or heat (paths: --fast)"},
     {"polygons_not_refined", "use --discretization refined, or --method heat"},

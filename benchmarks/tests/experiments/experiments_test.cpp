@@ -73,6 +73,22 @@ TEST(ConvergenceExperiment, TheAdaptiveVariantIsOfFirstOrder) {
     EXPECT_GE(table.smallest(order), 0.75) << order;
 }
 
+TEST(SmoothSurfacesExperiment, LengthsOfPolarMapsAreOfSecondOrder) {
+  const Table& table = toy("smooth_surfaces");
+  EXPECT_GE(table.where("method", "polar").smallest("order |vector|"), 1.8);
+  EXPECT_LE(table.where("method", "polar").largest("vector 95%"), table.where("method", "heat").largest("vector 95%"));
+  // The front uses the curvature of the smooth surface.
+  EXPECT_LT(table.where("method", "polar without windows").largest("vector 95%"),
+            table.where("method", "exact").largest("vector 95%") / 2);
+}
+
+TEST(CostsExperiment, ExactMapsHaveNoErrorAndMemoryIsMeasured) {
+  const Table& table = toy("costs");
+  EXPECT_EQ(table.where("method", "exact").largest("vector 95%"), 0);
+  EXPECT_LT(table.where("method", "polar").largest("vector 95%"), 1e-6);  // windows cover small meshes
+  EXPECT_GT(table.smallest("added MB"), 0);
+}
+
 TEST(TrustExperiment, VectorsThatAreTrustedAreRight) {
   const Table& table = toy("trust");
   EXPECT_GE(table.where("as", "triangles").smallest("area under curve"), 0.9);

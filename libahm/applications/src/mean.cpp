@@ -305,6 +305,13 @@ Vertex follow(const TangentGraph& graph, const PointsInMap& view, Vertex from, d
   return Vertex(best);
 }
 
+double longest_edge(const TangentGraph& graph, Vertex vertex) {
+  const Star star = graph.star(vertex.index);
+  double longest = 0;
+  for (std::size_t e = 0; e < star.degree(); ++e) longest = std::max(longest, length(star.log(e)));
+  return longest;
+}
+
 /// Weighted power mean of the distances from the center.
 double spread(const PointsInMap& view, double power) {
   const std::vector<double> away = distances(view.points, view.center);
@@ -345,8 +352,11 @@ Center search(const Problem& problem, double power, const CenterOptions& options
       share /= 2;
       next = share > 1e-6 ? follow(graph, here, x, share) : x;
     }
-    best.converged = next == x;
-    if (best.converged) break;
+    if (next == x) {
+      // A step that was halved to leave a cycle, or that no neighbor leads along, ends far from the center.
+      best.converged = remaining <= longest_edge(graph, best.vertex);
+      break;
+    }
     x = next;
   }
   return best;

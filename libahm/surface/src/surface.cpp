@@ -223,7 +223,7 @@ Method Surface::suggested_method() const { return choose_method(graph()); }
 
 FlatTriangles Surface::flat_triangles() const {
   throw InvalidArgument("no_flat_triangles", "exact geodesics need faces, which this surface does not have",
-                        "use the heat method");
+                        "use the polar or the heat method");
 }
 
 exact::MeshPoint Surface::flat_point_in_face(const FacePoint&) const {

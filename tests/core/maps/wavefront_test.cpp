@@ -5,6 +5,7 @@
 
 #include "ahm/conformance/triangle_meshes.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
+#include "ahm/util/vec.hpp"
 #include "core/solved_graph.hpp"
 #include "maps/front_geometry.hpp"
 
@@ -48,6 +49,23 @@ TEST(Wavefront, IsExactInSpace) {
   const FlatGraph flat = lattice3(9);
   const auto away = distances(CsrGraph(flat.data), source_at(100));
   for (Index i = 0; i < flat.size(); ++i) ASSERT_NEAR(away[i], length(flat.exact(100, i)), 1e-11);
+}
+
+TEST(Wavefront, HasDirectionsIfTheSourceIsTheOnlySeed) {
+  const Index rings = 12, around = 14, source = 6 * around;
+  const CsrGraph graph(tube(rings, around));
+  Wavefront front(graph, nullptr, true);
+  front.add(source_at(source));
+  front.run();
+  const Wavefront::Seed seed{.vertex = Vertex(source), .distance = 0, .direction = {NAN, NAN}, .arrival = {NAN, NAN}};
+  front.restart(std::span(&seed, 1));
+  front.run();
+  const auto expected = vectors(graph, source_at(source));
+  for (Index i = 0; i < graph.size(); ++i) {
+    if (i == source || 2 * (i % around) == around) continue;
+    const Vec2 found = front.distance(Vertex(i)) * front.direction(Vertex(i));
+    expect_near(std::span(expected).subspan(2 * to_size(i), 2), found, 1e-9);
+  }
 }
 
 bool is_near_rim(Index i, Index side) {

@@ -17,6 +17,9 @@ namespace ahm {
 /// Rays shorter than this share of a side have no reliable direction.
 inline constexpr double least_ray = 1e-6;
 
+/// Bound of m/d^2 times the length of a side or step. On a mesh where it would be larger, the triangles are too large for the correction.
+inline constexpr double max_bend = 0.2;
+
 /// A source point in the layout of a triangle with a at 0, b at (ab, 0) and c at (cx, cy), cy > 0. The point is at (x, -depth),
 /// `squared` is its squared distance from c. The line to c crosses the side ab at `share`: 0 at a, 1 at b. All are valid if `found`.
 struct Across {
@@ -70,11 +73,13 @@ struct DirectionAcross {
 /// The direction in which a ray that crosses the side leaves the source point. The directions of the rays to a and b give one
 /// estimate each. The result is their mean, weighted by how near the ray crosses. If they differ too much to belong to one front, it
 /// is the estimate of the nearer end.
-/// @param share    where the ray crosses the side: 0 at a, 1 at b
-/// @param towards  a point on the ray, in the layout of the triangle
-/// @param side     1: a, b, c counterclockwise; -1: clockwise
+/// @param share     where the ray crosses the side: 0 at a, 1 at b
+/// @param towards   a point on the ray, in the layout of the triangle
+/// @param side      1: a, b, c counterclockwise; -1: clockwise
+/// @param bend      `bend_along` of the side
+/// @param widening  ln(J / d) at b minus that at a (`widening_between`)
 inline DirectionAcross direction_across(const Across& point, double share, const Vec2& towards, double ab,
-                                        const Vec2& to_a, const Vec2& to_b, double side) {
+                                        const Vec2& to_a, const Vec2& to_b, double side, double bend, double widening) {
   // If the directions differ by more than this many times the angle that the side subtends at the point, the rays to a and b arrive along
   // two different paths, for example around a tube, and no ray passes between them.
   constexpr double two_ways = 6;
@@ -86,8 +91,16 @@ inline DirectionAcross direction_across(const Across& point, double share, const
   const double difference = length(Vec2{by_a[0] - by_b[0], by_a[1] - by_b[1]});
   if (difference > two_ways * ab / point.length()) return {share < 0.5 ? by_a : by_b, difference};
   const Vec2 sum{(1 - share) * by_a[0] + share * by_b[0], (1 - share) * by_a[1] + share * by_b[1]};
-  const double size = length(sum);
-  return {size > 0 ? Vec2{sum[0] / size, sum[1] / size} : by_a, difference};
+  // The weights are exact to first order. The second order: the angle at the source grows by sin(alpha) / J per length of the side, with the
+  // angle alpha between ray and side. `decrease` is the decrease of ln(sin(alpha) / J) along the side, `circle_decrease` that for a circle.
+  const double ray = length(c), cosine = c[0] / ray, circle = cross(a, b) / (length(a) * length(b));
+  const double angle = circle + side * cross(by_a, by_b), circle_decrease = 2 * cosine * ab / ray;
+  const double across_ray = std::clamp(widening + bend * cosine, -max_bend, max_bend);
+  const double decrease = circle_decrease - 2 * bend * cosine + across_ray;
+  const double turn = 0.5 * side * share * (1 - share) * (angle * decrease - circle * circle_decrease);
+  const Vec2 turned{sum[0] - turn * sum[1], sum[1] + turn * sum[0]};
+  const double size = length(turned);
+  return {size > 0 ? Vec2{turned[0] / size, turned[1] / size} : by_a, difference};
 }
 
 /// Solves the factored eikonal equation |grad(T0 u)| = 1 [FLZ09] at a vertex; T0 is the straight-line distance:
@@ -137,8 +150,6 @@ inline bool find_axes(const Star& star, std::vector<std::size_t>& axis) {
 
 // The curvature of the front at distance d is k = 1/d - m/d^2, where m is the focusing: m' = K d^2 + m^2/d^2 (docs/concepts/accuracy.md).
 
-/// Bound of m/d^2 times the length of a side or step. On a mesh where it would be larger, the triangles are too large for the correction.
-inline constexpr double max_bend = 0.2;
 /// Bound of `curvature_correction` as a share of the side and of the distance.
 inline constexpr double max_curvature_correction = max_bend / 8;
 
@@ -152,6 +163,13 @@ inline double focusing_after(double focusing, double from, double to, double cur
   const double over_plane = spared > 0 ? focusing / spared : most;
   const double bent = std::clamp(over_plane + curvature * step * (to * to + to * from + from * from) / 3, -most, most);
   return std::isfinite(bent) ? bent : 0;  // the squares of lengths may overflow
+}
+
+/// Change of ln(J / d), where J is the width of the front per angle at the source, J' / J = k; the integral of -m/d^2.
+inline float widening_between(double from, double focusing, double to, double focusing_there) {
+  const double here = from > 0 ? focusing / (from * from) : 0, there = to > 0 ? focusing_there / (to * to) : 0;
+  const double change = 0.5 * (here + there) * (from - to);
+  return std::isfinite(change) ? static_cast<float>(change) : 0;  // the squares of lengths may underflow
 }
 
 /// m/d^2 times the length of a side: the difference between the curvature of a circle and that of the front.

@@ -69,6 +69,7 @@ struct Wavefront::Impl {
     std::array<Index, 2> last{-1, -1};  ///< ends of the side that the path crosses last; equal: it follows an edge
     float share = 0;                    ///< where the path crosses that side: 0 at the first end, 1 at the second
     float variance = 0;                 ///< sum of squared differences of the direction estimates (`direction_error`)
+    float widening = 0;                 ///< ln(J / d): `widening_between`
     bool mirrored = false;              ///< as `is_mirrored`
   };
   /// A one-ring in the cache.
@@ -277,13 +278,25 @@ void Wavefront::Impl::offer_midpoints(std::vector<NearVertex>& given) {
 void Wavefront::Impl::restart(std::span<const Seed> seeds) {
   struct Start {
     double focusing = 0;
+    float widening = 0;
     bool mirrored = false;
   };
   std::vector<Start> starts;
   starts.reserve(seeds.size());
+  struct Neighboring {
+    Index vertex;
+    Entry entry;
+    Path path;
+  };
+  std::vector<Neighboring> beside_point;  // a seed at its point has no direction that its neighbors could take over
   for (const Seed& seed : seeds) {
     const Entry* const found = find(seed.vertex.index, seed.point);
-    starts.push_back(found ? Start{found->focusing, paths_[number(*found)].mirrored} : Start{});
+    starts.push_back(found ? Start{found->focusing, paths_[number(*found)].widening, paths_[number(*found)].mirrored}
+                           : Start{});
+    if (!std::isnan(seed.direction[0])) continue;
+    for (const Corner& corner : one_ring(seed.vertex.index))
+      if (const Entry* const next = find(corner.neighbor, seed.point))
+        beside_point.push_back({corner.neighbor, *next, paths_[number(*next)]});
   }
   std::ranges::fill(first_, none);
   entries_.clear();
@@ -295,6 +308,7 @@ void Wavefront::Impl::restart(std::span<const Seed> seeds) {
           {.direction = seeds[k].direction,
            .arrival = seeds[k].arrival,
            .variance = static_cast<float>(4 * seeds[k].error * seeds[k].error),
+           .widening = starts[k].widening,
            .mirrored = starts[k].mirrored},
           starts[k].focusing);
     entries_[first_[vertex]].gains = most_gains;  // prevents improvements
@@ -307,6 +321,8 @@ void Wavefront::Impl::restart(std::span<const Seed> seeds) {
     if (std::ranges::any_of(one_ring(vertex), is_free))
       queue_.push({entries_[first_[vertex]].distance, vertex, seed.point});
   }
+  for (const auto& [vertex, entry, path] : beside_point)
+    if (first_[vertex] == none) offer(vertex, entry.point, entry.distance, 0, {}, path, entry.focusing);
 }
 
 void Wavefront::Impl::run(double radius, const std::stop_token& stop) {
@@ -435,8 +451,11 @@ void Wavefront::Impl::spread(Index from, Index point, double distance) {
     known.distance = known.is_new ? along : before;
     known.along = along;
     known.focusing = known.is_new ? focusing_along(corners[k], along) : entry->focusing;
-    if (directions_)
+    if (directions_) {
       known.path = known.is_new ? Path{own.direction, {}, {from, from}, 0, own.variance} : path_of(entry);
+      if (known.is_new && is_curved_)
+        known.path.widening = own.widening + widening_between(distance, focusing, along, known.focusing);
+    }
     longest = std::max(longest, corners[k].length);
   }
   for (std::size_t k = 0; k < degree; ++k) {
@@ -454,16 +473,19 @@ void Wavefront::Impl::spread(Index from, Index point, double distance) {
       if (found.distance <= distance && is_beyond(distance, other.distance, base_length, cx, cy, limit)) return;
       const Across across = across_side(distance, other.distance, base_length, cx, cy, limit, missed_);
       if (!across.found) return;
-      double length = across.length(), bent_by = 0, crossing = across.share;
+      double length = across.length(), bent_by = 0, bend = 0, crossing = across.share;
+      float wider = 0;
       if (is_curved_) {
         const auto between = [&](double a, double b) { return (1 - across.share) * a + across.share * b; };
         const double height = cy + across.depth, to_side = across.depth / height * length;
         const double at_side = between(focusing, other.focusing);
-        const double bend = bend_along(base_length, at_side, to_side), squared_sine = height * height / across.squared;
+        const double squared_sine = height * height / across.squared;
+        bend = bend_along(base_length, at_side, to_side);
         const double bent = length + curvature_correction(bend, base_length, across.share, squared_sine);
         if (!(bent <= found.distance * (1 + same_length))) return;
         const double curved = between(curvature_here, curvature(corners[base].neighbor));
         bent_by = focusing_after(at_side, to_side, length, 0.5 * (curved + curvature(corners[target].neighbor)));
+        if (directions_) wider = widening_between(to_side, at_side, length, bent_by);
         crossing = bent_crossing(across.share, bend, base_length, length - to_side);
         length = bent;
       }
@@ -473,8 +495,10 @@ void Wavefront::Impl::spread(Index from, Index point, double distance) {
       found.is_new = true;
       if (!directions_) return;
       const Vec2 towards = crossing == across.share ? Vec2{cx, cy} : Vec2{crossing * base_length, 0};
-      const auto [direction, difference] = direction_across(across, crossing, towards, base_length, own.direction,
-                                                            other.path.direction, own.mirrored ? -side : side);
+      const auto [direction, difference] =
+          direction_across(across, crossing, towards, base_length, own.direction, other.path.direction,
+                           own.mirrored ? -side : side, bend, other.path.widening - own.widening);
+      found.path.widening = static_cast<float>((1 - crossing) * own.widening + crossing * other.path.widening + wider);
       found.path.direction = direction;
       found.path.variance =
           static_cast<float>((1 - crossing) * own.variance + crossing * other.path.variance + difference * difference);

@@ -36,7 +36,7 @@ struct Center {
   /// length of the distance.
   double spread = 0;
   Index maps = 0;          ///< number of log maps computed
-  bool converged = false;  ///< false: the search stopped at `max_maps`
+  bool converged = false;  ///< whether the center is within an edge of `vertex`; false also after `max_maps`
 };
 
 /// The Riemannian center of mass ([SS25] Sec. 5; [Kar77]): a local minimum of sum_k w_k d(x, p_k)^2 near the start.

@@ -82,7 +82,8 @@ class Wavefront {
     double error = 0;  ///< expected error of the direction, radians
   };
   /// Discards all results and starts again from the seeds. The front does not change the values of seeds. Each seed reuses the curvature of
-  /// the front at its vertex from the discarded results, if there is one, so run the front over the seeds first. Requires directions.
+  /// the front at its vertex from the discarded results, if there is one, so run the front over the seeds first. Neighbors of a point that
+  /// are no seeds keep their results. Requires directions.
   void restart(std::span<const Seed> seeds);
 
   /// Advances the front until all vertices nearer than `radius` (world units) have their final distance. Vertices beyond may have no
