@@ -73,7 +73,7 @@ def _same(a: Source, b: Source) -> bool:
     """Whether two results of `OnSurface._point` are equal."""
     if places.is_row(a) or places.is_row(b):
         return bool(places.is_row(a) and places.is_row(b) and a == b)
-    return np.array_equal(a[0], b[0]) and np.array_equal(a[1], b[1])  # type: ignore[index]
+    return np.array_equal(a[0], b[0]) and np.array_equal(a[1], b[1])  # type: ignore[index, arg-type]
 
 
 def nearer(a: np.ndarray, b: np.ndarray) -> np.ndarray:

@@ -189,7 +189,6 @@ void offer(CLI::App& app, DecalCommandOptions& o) {
   add_min_quality(app, o.min_quality);
   add_u_axis(app, o.source);
   add_method(app, o.solve);
-  add_tolerance(app, o.solve);
   add_graph_options(app, o.input, o.solve);
   add_local(app, o.input, "Up to the corners of the image, or to --radius");
   add_json(app, o.output);

@@ -101,7 +101,6 @@ void offer(CLI::App& app, InverseCommandOptions& o) {
   add_min_quality(app, o.min_quality);
   add_u_axis(app, o.source);
   add_method(app, o.solve, {Method::polar, Method::exact}, true);
-  add_tolerance(app, o.solve);
   add_strategy(app, o.solve);
   add_graph_options(app, o.input, o.solve);
   add_local(app, o.input, "Up to the farthest of POINTS");

@@ -112,13 +112,9 @@ Results::Results(const OutputOptions& output, const Input& input, const InputOpt
       title_(std::filesystem::path(options.path).filename().string()),
       threads_(options.threads),
       normals_(shows_normals(output) ? input.normals(options.threads) : std::vector<Vec3>()),
-      drawn_(output.view.empty() ? std::vector<Vec3>() : drawn_points(input, options)) {
-  if (drawn_.empty()) return;
-  for (const Triangle& t : mapped_triangles(input.surface())) {
-    if (triangle_begin_.empty()) triangle_begin_.push_back(0);
-    triangle_rows_.insert(triangle_rows_.end(), t.begin(), t.end());
-    triangle_begin_.push_back(static_cast<Offset>(triangle_rows_.size()));
-  }
+      drawn_(output.view.empty() ? std::vector<Vec3>() : drawn_points(input, options)),
+      is_cloud_(input.surface().faces().size() == 0) {
+  if (!drawn_.empty()) triangles_ = mapped_triangles(input.surface());
 }
 
 std::string input_column(const std::string& name) {
@@ -163,8 +159,9 @@ render::Scene Results::scene() const {
   render::Scene scene;
   scene.points = drawn_.empty() ? input_.points : drawn_;
   scene.normals = normals_;
-  scene.face_begin = drawn_.empty() ? std::span<const Offset>(input_.face_begin) : triangle_begin_;
-  scene.face_vertices = drawn_.empty() ? std::span<const Index>(input_.face_vertices) : triangle_rows_;
+  scene.face_begin = drawn_.empty() ? input_.face_begin : triangles_.begin;
+  scene.face_vertices = drawn_.empty() ? input_.face_vertices : triangles_.rows;
+  scene.is_cloud = is_cloud_;
   scene.title = title_;
   scene.colors = input_.colors;
   return scene;

@@ -86,8 +86,8 @@ class Results {
   unsigned threads_;
   std::vector<Vec3> normals_;           ///< empty if no output contains normals
   std::vector<Vec3> drawn_;             ///< `drawn_points`
-  std::vector<Offset> triangle_begin_;  ///< triangles between `drawn_`; empty: discs are drawn
-  std::vector<Index> triangle_rows_;
+  bool is_cloud_;
+  RowFaces triangles_;                  ///< triangles between `drawn_`; empty: discs are drawn
 };
 
 }  // namespace ahm::app

@@ -199,13 +199,14 @@ struct Busy {};
 
 /// @param drawn  points of a cloud that are drawn and can be picked; empty for meshes
 render::Scene scene_of(const Surface& surface, const io::Geometry& geometry, const std::vector<Vec3>& drawn,
-                       const std::vector<Vec3>& normals) {
+                       const RowFaces& triangles, const std::vector<Vec3>& normals) {
+  const FaceList faces = surface.faces();
   render::Scene scene;
+  scene.is_cloud = faces.size() == 0;
   scene.points = drawn.empty() ? geometry.points : drawn;
   scene.normals = normals;
-  const FaceList faces = surface.faces();
-  scene.face_begin = faces.begin;
-  scene.face_vertices = faces.vertices;
+  scene.face_begin = scene.is_cloud ? triangles.begin : faces.begin;
+  scene.face_vertices = scene.is_cloud ? triangles.rows : faces.vertices;
   return scene;
 }
 
@@ -222,6 +223,7 @@ struct Session::Impl {
   const io::Geometry& geometry;
   SessionOptions options;
   std::vector<Vec3> drawn;  ///< for clouds: positions of rows with a vertex, which can be sources
+  RowFaces triangles;       ///< for clouds: triangles between `drawn`; empty: discs are drawn
   std::vector<Vec3> normals;
   render::Scene scene;
   render::PageSurface page;
@@ -236,8 +238,9 @@ struct Session::Impl {
         geometry(read),
         options(std::move(wanted)),
         drawn(given.faces().size() > 0 ? std::vector<Vec3>() : mapped_positions(given)),
+        triangles(mapped_triangles(given)),
         normals(given.normals()),
-        scene(scene_of(given, read, drawn, normals)),
+        scene(scene_of(given, read, drawn, triangles, normals)),
         page(titled(), picture()),
         makers(given, options.threads) {
     warm_up = std::jthread([this](const std::stop_token& stop) { prepare(stop); });

@@ -101,6 +101,7 @@ struct PageSurface::Impl {
     }
     return std::move(out).finish({{"title", scene.title},
                                   {"is_mesh", drawable.is_mesh()},
+                                  {"is_cloud", scene.is_cloud || !drawable.is_mesh()},
                                   {"rows", scene.points.size()},
                                   {"center", triple(camera.center)},
                                   {"scale", camera.scale},

@@ -247,7 +247,7 @@ std::vector<Vec3> mapped_positions(const Surface& surface) {
   return result;
 }
 
-std::vector<Triangle> mapped_triangles(const Surface& surface) try {
+RowFaces mapped_triangles(const Surface& surface) try {
   if (surface.faces().size() > 0) return {};
   const FlatTriangles flat = surface.flat_approximation();
   const Index vertices = flat.surface.vertex_count();
@@ -260,10 +260,11 @@ std::vector<Triangle> mapped_triangles(const Surface& surface) try {
     rows.push_back(row->index);
   }
   if (min_vertices_per_unused * unused > vertices) return {};
-  std::vector<Triangle> triangles;
+  RowFaces triangles{{0}, {}};
   for (Index f = 0; f < flat.surface.face_count(); ++f) {
     const exact::HalfRecord side = flat.surface.record(3 * f);
-    triangles.push_back({rows[side.tail], rows[side.head], rows[side.apex]});
+    triangles.rows.insert(triangles.rows.end(), {rows[side.tail], rows[side.head], rows[side.apex]});
+    triangles.begin.push_back(static_cast<Offset>(triangles.rows.size()));
   }
   return triangles;
 } catch (const InvalidArgument&) {  // no triangles

@@ -397,7 +397,7 @@ Ahm.Viewer = class {
     message.textContent = "";
     viewer.panel.set_field("none");
     if (server) return await viewer.begin_live();
-    document.getElementById("about").textContent = surface.rows.toLocaleString("en") + (surface.is_mesh ? " vertices" : " points");
+    document.getElementById("about").textContent = surface.rows.toLocaleString("en") + (surface.is_cloud ? " points" : " vertices");
     viewer.show(map, map.pattern);
   } catch (error) {
     document.getElementById("panel").hidden = !window.ahm;

@@ -66,9 +66,10 @@ Ahm.pick = function (surface, origin, direction) {
   const hit = Ahm.pick_triangle(surface, origin, direction);
   if (!hit) return null;
   const k = hit.triangle, w = hit.weights, corner = w[0] >= w[1] && w[0] >= w[2] ? 0 : w[1] >= w[2] ? 1 : 2;
-  const vertex = surface.triangles[3 * k + corner];
+  const vertex = surface.triangles[3 * k + corner], row = surface.points[vertex];
+  if (surface.is_cloud) return { row: row, vertex: vertex, position: hit.position, source: { row: row } };
   const sides = surface.corners ? surface.corners[4 * k + 3] : 3;
   const weights = new Array(sides).fill(0);
   for (let c = 0; c < 3; ++c) weights[surface.corners ? surface.corners[4 * k + c] : c] = w[c];
-  return { row: surface.points[vertex], vertex: vertex, position: hit.position, source: { face: surface.faces[k], weights: weights } };
+  return { row: row, vertex: vertex, position: hit.position, source: { face: surface.faces[k], weights: weights } };
 };

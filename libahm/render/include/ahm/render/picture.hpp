@@ -42,6 +42,8 @@ struct Scene {
   /// Polygons in CSR format: the vertices of face f are face_vertices[face_begin[f] .. face_begin[f + 1]). Both empty: a point cloud.
   std::span<const Offset> face_begin;
   std::span<const Index> face_vertices;
+  /// Whether the polygons are triangles of a point cloud. A source picked on the page is then a point, not a place in a face.
+  bool is_cloud = false;
   /// The map, one number per point, world units. Points with NaN are gray. Must be empty for cells.
   std::span<const double> u, v;
   /// For cells: the cell of each point. Points with a negative label, or with a distance that is not finite, are gray.

@@ -60,9 +60,15 @@ std::vector<Triangle> turned_triangles(const Surface& surface, std::span<const V
 /// @return  rows x 3, world units; empty for a surface defined by edge lengths only
 std::vector<Vec3> mapped_positions(const Surface& surface);
 
+/// Faces by rows in CSR format: face f has the corners rows[begin[f]] to rows[begin[f + 1] - 1]. Both empty: no faces.
+struct RowFaces {
+  std::vector<Offset> begin;
+  std::vector<Index> rows;
+};
+
 /// The triangles of `Surface::flat_approximation` by rows. Empty where more than one vertex in fifty is in no triangle, because
 /// those points would not be visible. Empty for a surface with faces.
-std::vector<Triangle> mapped_triangles(const Surface& surface);
+RowFaces mapped_triangles(const Surface& surface);
 }  // namespace ahm
 
 namespace ahm::detail {
