@@ -13,6 +13,7 @@
 
 #include "ahm/io/write.hpp"
 #include "ahm/render/picture.hpp"
+#include "ahm/surface/surface_triangles.hpp"
 #include "input/open.hpp"
 
 namespace ahm::app {
