@@ -18,6 +18,7 @@
 #include "ahm/tiles/march_schedule.hpp"
 #include "ahm/tiles/tiled_local_maps.hpp"
 #include "ahm/tiles/tiled_log_map.hpp"
+#include "ahm/util/text.hpp"
 
 namespace ahm::tiles::program {
 
@@ -172,7 +173,7 @@ inline void print_map(const TiledMapSummary& s, Index vertices, bool coordinates
   if (s.begun_at > 0) std::cout << "resumed after band " << s.begun_at << " of an unfinished run\n";
   std::cout << s.ok << " of " << vertices << " vertices have " << (coordinates ? "coordinates" : "distances")
             << ", largest distance " << s.farthest << '\n'
-            << s.march.bands << " band(s), the largest with " << s.march.largest_band << " vertices";
+            << detail::counted(s.march.bands, "band") << ", the largest with " << s.march.largest_band << " vertices";
 }
 
 }  // namespace ahm::tiles::program

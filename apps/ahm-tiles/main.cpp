@@ -16,6 +16,7 @@
 #include "ahm-tiles/arguments.hpp"
 #include "ahm-tiles/plan_mesh.hpp"
 #include "ahm/tiles/build_tiles.hpp"
+#include "ahm/util/text.hpp"
 #include "cli/interrupt.hpp"
 
 namespace {
@@ -93,13 +94,13 @@ void make_local_maps(Arguments& a) {
   std::size_t made = 0;
   for (std::size_t t = a.number.value_or(0); t < (a.number ? *a.number + 1 : graph.tiles()); ++t)
     made += write_local_maps(graph, t, a.local.output, a.local.options);
-  std::cout << made << " tile(s) written; peak memory " << peak_megabytes() << " MB\n";
+  std::cout << detail::counted(made, "tile") << " written; peak memory " << peak_megabytes() << " MB\n";
 }
 
 void print(const Manifest& m) {
   std::int64_t vertices = 0, edges = 0;
   for (const TileFacts& t : m.tiles) vertices += t.vertices, edges += t.edges;
-  std::cout << m.tiles.size() << " tile(s), " << to_string(m.stage) << "; points: " << m.points
+  std::cout << detail::counted(m.tiles.size(), "tile") << ", " << to_string(m.stage) << "; points: " << m.points
             << ", input: " << m.input << '\n';
   if (m.stage == Stage::built)
     std::cout << vertices << " vertices; edges: " << edges / 2 << ", components: " << m.components
@@ -225,7 +226,7 @@ void add_maps(CLI::App& app, Arguments& a) {
 /// The message of an error, with the option of this program that helps.
 std::string message_of(const Error& error) {
   const std::string_view fault = error.fault();
-  if (fault == "non_finite") return std::string(error.problem()) + "; drop them with --drop-nan";
+  if (fault == "non_finite") return std::string(error.problem()) + "; drop such points with --drop-nan";
   if (fault == "normals_given") return std::string(error.problem()) + "; estimate them with --ignore-normals";
   if (fault == "non_manifold_edges" || fault == "non_manifold_vertices")
     return std::string(error.problem()) + "; cut the mesh there with --non-manifold split";

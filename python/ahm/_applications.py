@@ -96,7 +96,7 @@ def cells(surface: SurfaceLike, sources: Sources, *, method: Optional[str] = Non
 
     surface : a `Surface`, a solver, or what `ahm.surface` takes.
     sources : rows, positions, `(face, barycentric)`, `((row, row), t)`. A row may occur only once.
-    method : "unfold" (default) or "exact", as in `distance`. If `surface` is an `ExactGeodesics`, the default is "exact".
+    method : "wavefront" (default) or "exact", as in `distance`. If `surface` is an `ExactGeodesics`, the default is "exact".
     progress : as in `LogMapSolver`.
 
     >>> import ahm
@@ -106,7 +106,7 @@ def cells(surface: SurfaceLike, sources: Sources, *, method: Optional[str] = Non
     Raises ValueError naming the argument, the index and the value.
     """
     on = as_body(surface)
-    method = _unfold_or_exact(surface, method)
+    method = _wavefront_or_exact(surface, method)
     _, _, kinds, rows, _, _ = places.points(sources, "sources", on)
     to_rows = np.flatnonzero(kinds == places.ROW)
     _, first = np.unique(rows[to_rows], return_index=True)
@@ -116,10 +116,10 @@ def cells(surface: SurfaceLike, sources: Sources, *, method: Optional[str] = Non
     return Cells(labels, distance)
 
 
-def _unfold_or_exact(surface: Any, method: Optional[str]) -> str:
+def _wavefront_or_exact(surface: Any, method: Optional[str]) -> str:
     if method is None:
-        return "exact" if isinstance(getattr(surface, "_solver", surface), ExactGeodesics) else "unfold"
-    return arguments.choice(method, "method", ("unfold", "exact"))
+        return "exact" if isinstance(getattr(surface, "_solver", surface), ExactGeodesics) else "wavefront"
+    return arguments.choice(method, "method", ("wavefront", "exact"))
 
 
 def farthest_points(surface: SurfaceLike, count: int, first: Source = 0, *, method: Optional[str] = None,
@@ -139,7 +139,7 @@ def farthest_points(surface: SurfaceLike, count: int, first: Source = 0, *, meth
     Returns (count,) int32. Raises ValueError naming the argument and the value.
     """
     on = as_body(surface)
-    by = _unfold_or_exact(surface, method)
+    by = _wavefront_or_exact(surface, method)
     at = places.point(first, "first", on)
     with reporting(progress) as report:
         return _core.farthest(on._body, at, arguments.integer(count, "count", 1), by == "exact", report)

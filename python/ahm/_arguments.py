@@ -9,6 +9,12 @@ from typing import Any, Optional, Tuple
 import numpy as np
 
 INT32 = np.iinfo(np.int32)
+PLURALS = {"entry": "entries", "vertex": "vertices"}
+
+
+def counted(count: int, noun: str) -> str:
+    """A count with its noun: "1 face", "2 faces"."""
+    return f"{count} {noun if count == 1 else PLURALS.get(noun, noun + 's')}"
 
 
 def array(value: Any, name: str) -> np.ndarray:

@@ -59,4 +59,4 @@ class PointCloud(Surface):
         return np.array(self.points), self._normals
 
     def _describe(self) -> str:
-        return f"{len(self)} points" + (", with normals" if self._normals is not None else "")
+        return arguments.counted(len(self), "point") + (", with normals" if self._normals is not None else "")

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from scipy.sparse import csr_matrix
 
 
-def distance(surface: SurfaceLike, sources: Sources, *, targets: Optional[Sources] = None, method: str = "unfold",
+def distance(surface: SurfaceLike, sources: Sources, *, targets: Optional[Sources] = None, method: str = "wavefront",
              radius: Optional[float] = None, progress: Progress = None) -> np.ndarray:
     """Geodesic distance from the nearest of one or more sources, world units.
 
@@ -26,7 +26,7 @@ def distance(surface: SurfaceLike, sources: Sources, *, targets: Optional[Source
     sources : one or more points: rows, positions, `(faces, barycentric)`, `(edges, t)`.
     targets : None: all rows, the result has the shape (n,). Or k points, the result has the shape (k,). Targets that are not
         rows require method "exact".
-    method : "unfold" (default): a wavefront over the triangles, best for distances on meshes. "heat": the distance of a log map
+    method : "wavefront" (default): a wavefront over the triangles, best for distances on meshes. "heat": the distance of a log map
         by the heat method, smooth, best on noise. "exact": exact on the flat triangles of a mesh. On clouds, grids and graphs,
         "heat" takes one solve each with A and B and smooths over about one edge midway between sources. On meshes it uses a
         wavefront, too.
@@ -45,7 +45,7 @@ def distance(surface: SurfaceLike, sources: Sources, *, targets: Optional[Source
     return distance_and_nearest(surface, sources, targets=targets, method=method, radius=radius, progress=progress)[0]
 
 
-def distance_and_nearest(surface: SurfaceLike, sources: Sources, *, targets: Optional[Sources] = None, method: str = "unfold",
+def distance_and_nearest(surface: SurfaceLike, sources: Sources, *, targets: Optional[Sources] = None, method: str = "wavefront",
                          radius: Optional[float] = None, progress: Progress = None) -> tuple:
     """The result of `distance`, and the number of the nearest source: int32, -1 where none is connected; None for method "heat".
 
@@ -56,7 +56,7 @@ def distance_and_nearest(surface: SurfaceLike, sources: Sources, *, targets: Opt
     [0, 1]
     """
     on = as_body(surface)
-    arguments.choice(method, "method", ("unfold", "heat", "exact"))
+    arguments.choice(method, "method", ("wavefront", "heat", "exact"))
     at = places.points(sources, "sources", on)
     reach = float("inf") if radius is None else arguments.real(radius, "radius", positive=True, finite=False)
     if method == "exact":
@@ -69,7 +69,7 @@ def distance_and_nearest(surface: SurfaceLike, sources: Sources, *, targets: Opt
     with reporting(progress) as report:
         if method == "heat":
             if radius is not None:
-                raise ValueError("radius: method 'heat' does not support it; use 'unfold' or 'exact'")
+                raise ValueError("radius: method 'heat' does not support it; use 'wavefront' or 'exact'")
             found, nearest = _core.heat_distance(as_solver(surface)._core, at, report)[0], None
         else:
             found, nearest = _core.front_distance(on._body, at, reach, report)

@@ -150,7 +150,7 @@ class Graph(Surface):
         return None if frames is None else frames[:, 0]
 
     def _describe(self) -> str:
-        return f"{len(self)} vertices, {self._body.edge_count} edges, dimension {self.dimension}"
+        return f"{arguments.counted(len(self), 'vertex')}, {arguments.counted(self._body.edge_count, 'edge')}, dimension {self.dimension}"
 
 
 def _listed(transports: Any) -> np.ndarray:

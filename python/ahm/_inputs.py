@@ -30,7 +30,7 @@ def read(path: FileName, kind: Optional[str] = None, **options: object) -> Surfa
     ...     _ = file.write("v 0 0 0\\nv 1 0 0\\nv 0 1 0\\nf 1 2 3\\n"), file.flush()
     ...     mesh = ahm.read(file.name)
     >>> mesh
-    <ahm.TriangleMesh: 3 vertices, 1 faces>
+    <ahm.TriangleMesh: 3 vertices, 1 face>
 
     Raises IoError (an OSError) naming the file and the problem. Also raises as the class of the surface.
     """
@@ -40,15 +40,19 @@ def read(path: FileName, kind: Optional[str] = None, **options: object) -> Surfa
     if kind is None:
         kind = "cloud" if begin is None else "triangles" if (np.diff(begin) == 3).all() else "polygons"
     arguments.choice(kind, "kind", ("triangles", "polygons", "cloud"))
-    if kind == "cloud":
-        return PointCloud(got["points"], got["normals"], **given)
-    if begin is None:
+    if begin is None and kind != "cloud":
         raise ValueError(f"kind: {os.fsdecode(path)} contains no faces; use kind='cloud'")
-    if kind == "polygons":
-        return PolygonMesh(got["points"], Compressed(begin, corners), **given)
-    if not (np.diff(begin) == 3).all():
+    if kind == "triangles" and not (np.diff(begin) == 3).all():
         raise ValueError(f"kind: {os.fsdecode(path)} contains faces that are not triangles; use kind='polygons'")
-    return TriangleMesh(got["points"], corners.reshape(-1, 3), **given)
+    result: Surface
+    if kind == "cloud":
+        result = PointCloud(got["points"], got["normals"], **given)
+    elif kind == "polygons":
+        result = PolygonMesh(got["points"], Compressed(begin, corners), **given)
+    else:
+        result = TriangleMesh(got["points"], corners.reshape(-1, 3), **given)
+    result._read_warnings = got["warnings"]
+    return result
 
 
 def surface(thing: SurfaceInput, **options: object) -> Surface:

@@ -140,7 +140,7 @@ class LocalMaps:
                        self.transport)
 
     def __repr__(self) -> str:
-        return f"<ahm.LocalMaps: {len(self)} sources, {len(self.indices)} entries>"
+        return f"<ahm.LocalMaps: {arguments.counted(len(self), 'source')}, {arguments.counted(len(self.indices), 'entry')}>"
 
 
 def local_maps(surface: SurfaceLike, radius: Optional[float] = None, k: Optional[int] = None, *,

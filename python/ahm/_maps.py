@@ -211,7 +211,7 @@ class LogMap:
     def __repr__(self) -> str:
         row = self._map.source()[2]
         start = "a point" if row is None else f"row {row}"
-        return f"<ahm.LogMap: {self.method}, {len(self)} rows, {int(self.ok.sum())} ok, from {start}>"
+        return f"<ahm.LogMap: {self.method}, {arguments.counted(len(self), 'row')}, {int(self.ok.sum())} ok, from {start}>"
 
 
 def _again(recipe: Any, number: int) -> LogMap:

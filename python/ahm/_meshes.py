@@ -65,7 +65,7 @@ class TriangleMesh(Surface):
         return np.array(self.points), np.array(self.faces)
 
     def _describe(self) -> str:
-        return f"{len(self)} vertices, {self._face_count} faces"
+        return f"{arguments.counted(len(self), 'vertex')}, {arguments.counted(self._face_count, 'face')}"
 
 
 class PolygonMesh(Surface):
@@ -120,7 +120,7 @@ class PolygonMesh(Surface):
         return np.array(self.points), Compressed(np.array(begin), np.array(corners))
 
     def _describe(self) -> str:
-        return f"{len(self)} vertices, {self._face_count} faces"
+        return f"{arguments.counted(len(self), 'vertex')}, {arguments.counted(self._face_count, 'face')}"
 
 
 class Compressed(NamedTuple):

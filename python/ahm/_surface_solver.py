@@ -81,7 +81,7 @@ class SurfaceSolver:
         >>> ahm.SurfaceSolver(ahm.shapes.plane(4, 2)).distance([0, 3])[:4].round(9).tolist()
         [0.0, 1.0, 1.0, 0.0]
         """
-        method = "exact" if self.method == "exact" else "unfold"
+        method = "exact" if self.method == "exact" else "wavefront"
         return _distance(self.surface, sources, method=method, radius=radius, progress=progress)
 
     def path(self, start: Source, end: Source, *, progress: Progress = None) -> Optional[Path]:

@@ -50,6 +50,7 @@ class Surface:
     _body: _core.Body
     _options: Dict[str, Any]
     _position_width = 3
+    _read_warnings: List[SurfaceWarning] = []  # of the file
 
     def __len__(self) -> int:
         """Number of rows."""
@@ -91,10 +92,10 @@ class Surface:
 
     @property
     def warnings(self) -> List[SurfaceWarning]:
-        """Problems of the input: dictionaries with a sentence `text`, and `id`, `numbers`, `rows` and `name`.
+        """Problems of the file (`ahm.read`) and of the input: dictionaries with a sentence `text`, and `id`, `numbers`, `rows` and `name`.
 
         The C++ header of each surface lists the ids."""
-        return self._body.warnings()
+        return [*self._read_warnings, *self._body.warnings()]
 
     @property
     def components(self) -> np.ndarray:
@@ -152,7 +153,7 @@ class Surface:
         return f"<ahm.{type(self).__name__}: {self._describe()}>"
 
     def _describe(self) -> str:
-        return f"{len(self)} rows"
+        return arguments.counted(len(self), "row")
 
 
 def _again(type_: type, state: tuple, options: Dict[str, Any]) -> Surface:

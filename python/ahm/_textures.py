@@ -33,7 +33,7 @@ class Decal(NamedTuple):
     hidden: int  #: number of triangles left out: under another sheet of the map, or not connected to the rest of the decal
 
     def __repr__(self) -> str:
-        return f"<ahm.Decal: {len(self.points)} points, {len(self.faces)} faces>"
+        return f"<ahm.Decal: {arguments.counted(len(self.points), 'point')}, {arguments.counted(len(self.faces), 'face')}>"
 
 
 def decal(map: Union[LogMap, InverseMap], width: float, height: float, *, angle: float = 0.0, mirrored: bool = False,
@@ -94,7 +94,7 @@ class Coverage(NamedTuple):
 
     def __repr__(self) -> str:
         found = len(self.between) - int(np.count_nonzero(self.between))
-        return f"<ahm.Coverage: {len(self.uv)} points, {found} of {self.planned} of the pattern, pieces: {self.pieces}>"
+        return f"<ahm.Coverage: {arguments.counted(len(self.uv), 'point')}, {found} of {self.planned} of the pattern, pieces: {self.pieces}>"
 
 
 def coverage(map: Union[LogMap, InverseMap], radius: float, spacing: float, *, pattern: str = "raster",
@@ -139,7 +139,7 @@ class Atlas(NamedTuple):
     distortion: Dict[str, float]
 
     def __repr__(self) -> str:
-        return f"<ahm.Atlas: charts: {len(self.sources)}, {len(self.points)} points, {len(self.faces)} faces>"
+        return f"<ahm.Atlas: charts: {len(self.sources)}, {arguments.counted(len(self.points), 'point')}, {arguments.counted(len(self.faces), 'face')}>"
 
 
 def atlas(solver: SurfaceLike, sources: Optional[Sources] = None, *, charts: int = 20, max_distortion: Optional[float] = None,

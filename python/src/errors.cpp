@@ -31,14 +31,14 @@ struct Advice {
 
 /// Remedies by fault, in terms of the Python package. They replace those of the C++ messages.
 constexpr Advice advices[] = {
-    {"collinear_faces", "remove them, or use method 'heat'"},
+    {"collinear_faces", "remove such faces, or use method 'heat'"},
     {"diffusion_time_range", "use a t_coef near 1"},
     {"map_without_frames", "make it with frames=True"},
     {"map_without_spread", "make it with spread=True and distances=True"},
     {"no_flat_triangles", "use method 'heat'"},
     {"non_finite", "drop these points with drop_non_finite=True"},
-    {"non_manifold_edges", "repair them, or cut the mesh there with non_manifold='split'"},
-    {"non_manifold_vertices", "repair them, or split them with non_manifold='split'"},
+    {"non_manifold_edges", "repair the mesh, or cut it there with non_manifold='split'"},
+    {"non_manifold_vertices", "repair the mesh, or split it there with non_manifold='split'"},
     {"polygons_not_refined", "make the mesh with discretization='refined', or use method 'heat'"},
     {"polygons_too_large", "make the mesh with discretization='refined'"},
     {"twisted_faces", "make the mesh with discretization='polygons'"},

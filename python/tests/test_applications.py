@@ -63,10 +63,10 @@ def test_distances_by_three_methods_on_the_plane(flat_surfaces):
     s = flat_surfaces["triangles"]
     solver = ahm.LogMapSolver(s)
     P = s.points
-    for method, tolerance in (("unfold", 1e-9), ("exact", 1e-9), ("heat", 1e-9)):
+    for method, tolerance in (("wavefront", 1e-9), ("exact", 1e-9), ("heat", 1e-9)):
         np.testing.assert_allclose(ahm.distance(solver, 20, method=method), np.linalg.norm(P - P[20], axis=1), atol=tolerance)
     truth = np.minimum(np.linalg.norm(P - P[0], axis=1), np.linalg.norm(P - P[142], axis=1))
-    for method in ("unfold", "exact"):
+    for method in ("wavefront", "exact"):
         found, nearest = ahm.distance_and_nearest(s, [0, 142], method=method)
         np.testing.assert_allclose(found, truth, atol=1e-9)
         clear = np.abs(np.linalg.norm(P - P[0], axis=1) - np.linalg.norm(P - P[142], axis=1)) > 1e-9

@@ -216,11 +216,17 @@ def test_files_may_have_any_name(tmp_path):
         assert len(ahm.read(name)) == 3
 
 
+def test_surfaces_keep_the_warnings_of_the_file(tmp_path):
+    path = tmp_path / "odd.obj"
+    path.write_text("$ made by hand\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    assert [w["id"] for w in ahm.read(path).warnings] == ["lines_skipped"]
+
+
 def test_no_points_give_no_results(sphere):
     m = ahm.log_map(sphere, 0)
     for none in ([], np.empty((0, 3)), np.empty(0, int)):
         assert m.sample(none).shape == (0, 2) and m.inverse(np.empty((0, 2))).position.shape == (0, 3)
-        for method in ("unfold", "heat", "exact"):
+        for method in ("wavefront", "heat", "exact"):
             assert ahm.distance(sphere, 0, targets=none, method=method).shape == (0,)
         assert len(ahm.local_maps(sphere, 0.3, sources=none)) == 0
 

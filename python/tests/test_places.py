@@ -62,7 +62,7 @@ def test_single_precision_weights_are_taken_at_their_word(flat_surfaces):
     np.testing.assert_allclose(near, m.sample((np.arange(50), weights)), atol=1e-6)
 
 
-@pytest.mark.parametrize("method", ["unfold", "heat", "exact"])
+@pytest.mark.parametrize("method", ["wavefront", "heat", "exact"])
 def test_distances_from_points_between_rows_are_straight_lines(flat_surfaces, method):
     s = flat_surfaces["triangles"]
     a, b = edge_of(s)
@@ -178,7 +178,7 @@ def test_cells_of_any_points_are_those_of_the_nearest(flat_surfaces):
         places = np.array([ahm.log_map(s, one).source.position for one in sources])
         away = np.linalg.norm(s.points[:, None] - places[None], axis=2)
         clear = np.diff(np.sort(away, axis=1)[:, :2], axis=1)[:, 0] > 1e-9
-        for method in ("unfold", "exact"):
+        for method in ("wavefront", "exact"):
             found = ahm.cells(s, sources, method=method)
             np.testing.assert_allclose(found.distance, away.min(axis=1), atol=1e-9)
             np.testing.assert_array_equal(found.labels[clear], away.argmin(axis=1)[clear])

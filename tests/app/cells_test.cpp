@@ -85,7 +85,7 @@ TEST_F(Cells, AreMissingOnComponentsWithoutASource) {
     EXPECT_EQ(std::isnan(p["label"]), p["x"] > 5);
     EXPECT_EQ(p.status, p["x"] > 5 ? "disconnected" : "ok");
   }
-  EXPECT_TRUE(has(outcome.err, "50 % of the vertices are not connected"));
+  EXPECT_TRUE(has(outcome.err, "225 of 450 vertices are not connected"));
 }
 
 class Center : public InFolder {

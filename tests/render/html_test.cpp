@@ -103,6 +103,17 @@ TEST_F(Html, ContainsEveryPointAndFace) {
   expect_counts(bundle(page(mesh.scene()), "map_data"), {{"uv", 121 * 2}});
 }
 
+TEST_F(Html, FramesTheMapBesideAMuchLargerPart) {
+  const double alone = bundle(page(scene), "surface_data")["scale"];
+  for (const Vec3& corner : {Vec3{0, 0, 0}, Vec3{1000, 0, 0}, Vec3{1000, 1000, 0}, Vec3{0, 1000, 0}}) {
+    mesh.points.push_back({corner[0] + 3, corner[1], corner[2]});
+    mesh.normals.push_back({0, 0, 1});
+    mesh.u.push_back(NAN), mesh.v.push_back(NAN);
+  }
+  mesh.add_face({121, 122, 123, 124});
+  EXPECT_EQ(bundle(page(mesh.scene()), "surface_data")["scale"], alone);
+}
+
 TEST_F(Html, ContainsValuesOfThePointUnderThePointer) {
   const std::vector<double> distance(121, 2.0), spread(121, 0.5);
   const std::vector<Status> status(121, Status::ok);

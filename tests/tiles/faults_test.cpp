@@ -183,9 +183,8 @@ TEST(TileFaults, UnsuitableInputsAreRefused) {
     tiles::TileOptions options = {};
   };
   for (const auto& [content, message, options] :
-       {Refusal{"0 0 0\n1 0 0\n", "2 finite point(s)"}, Refusal{"0 0 0\n1 0 0\n0 0 0\n1 0 0\n", "2 distinct"},
-        Refusal{"0 0 0\n1 0 0\n2 0 0\n3 0 0\n", "lie on a line"},
-        Refusal{with_nan, "1 non-finite point(s) in the file"}})
+       {Refusal{"0 0 0\n1 0 0\n", "2 finite points"}, Refusal{"0 0 0\n1 0 0\n0 0 0\n1 0 0\n", "2 distinct"},
+        Refusal{"0 0 0\n1 0 0\n2 0 0\n3 0 0\n", "lie on a line"}, Refusal{with_nan, "1 non-finite point in the file"}})
     expect_error<InvalidGeometry>([&] { tile_file("points.xyz", content, options); }, message);
   for (const auto& [content, message, options] :
        {Refusal{with_normals, "normals"}, Refusal{good, "tile_points", {.tile_points = 10}},
@@ -227,7 +226,8 @@ TEST(TilesProgram, NamesItsOwnOptions) {
   write_points(input, points);
   const std::string command =
       std::string(AHM_TILES_PROGRAM) + " plan " + input.string() + " -o " + (folder.directory() / "tiles").string();
-  EXPECT_EQ(output_of(command, 1), "ahm-tiles: error: 1 non-finite point(s) in the file; drop them with --drop-nan\n");
+  EXPECT_EQ(output_of(command, 1),
+            "ahm-tiles: error: 1 non-finite point in the file; drop such points with --drop-nan\n");
 }
 
 /// Without enough address space the threads of OpenBLAS never end. From 200 MB on the system's loader has what it needs.

@@ -295,7 +295,7 @@ TEST(LocalFeatures, RefuseUnknownNamesAndUnsuitableColumns) {
   expect_error<IoError>([&] { write_mean("missing.npy"); }, "missing.npy");
   for (const char* name : {"", "points.ply"}) expect_error<IoError>([&] { write_mean(name); }, "not a .npy file");
   write_column(cloud.file("short.npy"), std::vector<double>(899));
-  expect_error<InvalidArgument>([&] { write_mean("short.npy"); }, "899 value(s); the input of the tiles has 900 rows");
+  expect_error<InvalidArgument>([&] { write_mean("short.npy"); }, "899 values; the input of the tiles has 900 rows");
   struct Column {
     const char *type, *shape;
     std::size_t values;

@@ -192,8 +192,8 @@ class Page(unittest.TestCase):
             self.assertEqual(self.text("at_status"), "ok")
             for name in ("u", "v", "distance", "spread"):
                 self.assertAlmostEqual(float(self.text("at_" + name)), float(rows[row][name]), delta=1e-5)
-            for told, true in zip(self.text("at_position").split(), self.points[row]):
-                self.assertAlmostEqual(float(told), true, delta=1e-5)
+            for shown, true in zip(self.text("at_position").split(), self.points[row]):
+                self.assertAlmostEqual(float(shown), true, delta=1e-5)
         self.at(230, 10).perform()
         self.wait("document.getElementById('at_row').textContent === '–'")
 

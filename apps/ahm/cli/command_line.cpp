@@ -26,8 +26,8 @@ constexpr const char* main_footer =
     "  ahm logmap scan.ply --source 0 -o map.ply --view map.png\n"
     "\n"
     "A logarithmic map flattens a surface around a source point: each point gets the direction and the length of the\n"
-    "shortest path from the source to it. Paths of polar and exact maps go around holes. With --method heat the\n"
-    "coordinates behind a hole are those of the plane.\n"
+    "shortest path from the source to it. Polar maps (the usual default) and exact maps go around holes. Maps by heat\n"
+    "(--method heat) go straight across the holes of flat surfaces.\n"
     "\n"
     "'ahm manual [SUBCOMMAND]' prints a manual page, 'ahm completion bash|zsh|fish' a script for the shell.\n"
     "\n"
@@ -67,8 +67,7 @@ void check_first_word(const std::string& first, const std::vector<Subcommand>& c
 }  // namespace
 
 std::function<void()> parse_command_line(int argc, const char* const* argv) {
-  const auto app =
-      std::make_shared<CLI::App>("Logarithmic maps on meshes and point clouds by the affine heat method", "ahm");
+  const auto app = std::make_shared<CLI::App>("Logarithmic maps, paths and textures on meshes and point clouds", "ahm");
   app->get_formatter()->column_width(26);
   app->footer(main_footer);
   app->require_subcommand(1);

@@ -166,19 +166,20 @@ CLI::Option* add_normals(CLI::App& app, InputOptions& o) {
 }
 
 void add_local(CLI::App& app, InputOptions& o, const std::string& radius) {
-  app.add_flag("--local", o.around_source,
-               radius +
-                   ": build the graph only around the source. Fast on very large inputs.\n"
-                   "The diffusion time, and the noise of a cloud, which decides what is connected, are then measured\n"
-                   "around the source only");
+  app.add_flag(
+      "--local", o.around_source,
+      radius +
+          ": build the graph only around the source, which is fast on very large inputs.\n"
+          "The mean edge length and the noise of a cloud are then measured there only, so results differ from\n"
+          "those of the whole input");
 }
 
 void add_mesh_options(CLI::App& app, InputOptions& o) {
   const char* group = "Triangle meshes";
   app.add_flag_callback(
          "--no-flips", [&o] { o.flips = false; },
-         "Do not flip edges to the intrinsic Delaunay triangulation; for comparisons. Distances are then those of\n"
-         "the heat, which do not go around holes, and quality is less reliable")
+         "Keep the edges of the mesh instead of flipping them to the intrinsic Delaunay triangulation, for\n"
+         "comparisons. Distances then do not go around holes, and quality is less reliable")
       ->group(group);
   add_non_manifold(app, o)->group(group);
   add_parsed(app, "--discretization", o.discretization, choice({"auto", "polygons", "refined"}), "NAME",

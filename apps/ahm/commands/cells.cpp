@@ -11,7 +11,6 @@
 
 #include "cli/option_adders.hpp"
 #include "cli/source_list.hpp"
-#include "commands/solve.hpp"
 #include "commands/subcommand.hpp"
 #include "output/results.hpp"
 #include "output/summary.hpp"
@@ -35,12 +34,16 @@ constexpr const char* cells_footer =
 
 struct CellsOptions {
   InputOptions input;
-  SolveOptions solve;
+  bool is_exact = false;  ///< distances by straight lines over the faces instead of a wavefront
   OutputOptions output;
   std::vector<SourceSpec> sources;
   Index count = 0;  ///< number of spread sources; 0: use `sources`
   std::optional<SourceSpec> start;
 };
+
+ExactMapOptions exact_options(const CellsOptions& options, Journal& journal) {
+  return {.progress = journal.progress(), .threads = options.input.threads};
+}
 
 /// The vertices of the graph at the sources.
 /// @throws InvalidArgument (two sources at one vertex)
@@ -71,7 +74,7 @@ std::vector<Vertex> spread(const CellsOptions& options, const Input& input,
   if (options.start) comment_on_positions(input, std::span(&*options.start, 1), "--start", journal);
   const Vertex first =
       options.start ? vertex_at(input, *options.start, "--start") : first_vertex(input.surface().rows());
-  return geodesics ? farthest_points(*geodesics, first, options.count, exact_options(options.solve, journal), among)
+  return geodesics ? farthest_points(*geodesics, first, options.count, exact_options(options, journal), among)
                    : farthest_points(*front, first, options.count, journal.progress(), among);
 }
 
@@ -168,15 +171,15 @@ void run(const CellsOptions& options) {
   comment_on_positions(input, options.sources, "--sources", journal);
   std::optional<ExactGeodesics> geodesics;
   std::optional<Wavefront> front;
-  if (options.solve.method == Method::exact)
+  if (options.is_exact)
     geodesics.emplace(input.surface());
   else
     front.emplace(graph, Wavefront::one_rings(graph, options.input.threads));
   if (options.count > 0) sources = spread(options, input, geodesics, front, journal);
 
   journal.start("cells");
-  const VoronoiCells cells = geodesics ? voronoi_cells(*geodesics, sources, exact_options(options.solve, journal))
-                                       : voronoi_cells(*front, sources);
+  const VoronoiCells cells =
+      geodesics ? voronoi_cells(*geodesics, sources, exact_options(options, journal)) : voronoi_cells(*front, sources);
   const CellRows rows = rows_of(input, cells);
   comment_on_statuses(rows.status, options.input.path, journal);
 
@@ -205,10 +208,9 @@ void offer(CLI::App& app, CellsOptions& o) {
       throw CLI::ValidationError("--sources", "use either --sources or --count");
   });
   add_table_output(app, o.output)->required();
-  add_method(app, o.solve, {Method::exact})
-      ->description(
-          "heat (default): distances by a wavefront over the graph, without solving for heat;\n"
-          "exact: by straight lines over the faces of a mesh");
+  add_parsed(app, "--method", o.is_exact, choice_of<bool>({{"wavefront", false}, {"exact", true}}), "NAME",
+             "Distances by a wavefront over the graph: wavefront (default),\n"
+             "or by straight lines over the faces of a mesh: exact");
   add_backend(app, o.input);
   add_threads(app, o.input);
   add_cloud_options(app, o.input);

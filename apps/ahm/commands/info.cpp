@@ -42,7 +42,7 @@ void offer(CLI::App& app, InfoOptions& o) {
 }  // namespace
 
 Subcommand add_info(CLI::App& program) {
-  return subcommand<InfoOptions>(program, "info", "Contents and defects of a file, and a command to run on it",
+  return subcommand<InfoOptions>(program, "info", "Contents and problems of a file, and the command to run next",
                                  "Example:\n  ahm info scan.pcd", offer, run);
 }
 

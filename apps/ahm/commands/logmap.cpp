@@ -333,7 +333,7 @@ constexpr const char* logmap_footer =
     "          index,x,y,z,u,v,distance,angle,status,quality,spread,error_estimate,bounded,\n"
     "          with --gradient also gx,gy,gz: unit vector in space, away from the source along the surface\n"
     "        u,v             the log map. Polar and exact: length and direction of the shortest path. Heat: a mean\n"
-    "                        over paths, which shrinks to zero at the cut locus; behind holes as in the plane\n"
+    "                        over paths, which shrinks to zero at the cut locus and goes straight across flat holes\n"
     "        distance        length of the shortest path along the surface; for heat it differs from |(u, v)|\n"
     "        quality         reliability of u,v in (0, 1]; below 0.5 errors may exceed a tenth of the distance\n"
     "        spread          uncertainty of u,v as a length; large at the cut locus, where the map tears\n"
@@ -484,7 +484,7 @@ void offer(CLI::App& app, LogmapCommand& command) {
       "--estimate", o.estimate,
       "Print the estimated time and memory of a map by heat and exit. Without --source the estimate uses only the\n"
       "size of INPUT (even sampling, no radius). With --source it builds the graph and is accurate to a third.\n"
-      "On clouds, how far a march continues beyond --radius is unknown; the estimate without radius is a bound");
+      "On clouds a march with --radius may cost more than estimated, but never more than without --radius");
   app.callback([=, &app, &command, &o] {
     if (o.input.around_source && !o.solve.radius) throw CLI::ValidationError("--local", "requires --radius");
     if (o.solve.strategy == Strategy::global && app.count("--accuracy") > 0)

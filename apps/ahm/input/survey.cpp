@@ -173,7 +173,7 @@ std::string as_text(const MethodAdvice& advice) {
     const std::string number = angle < 10 ? fmt::format("{:.2g}", angle) : fmt::format("{:.0f}", angle);
     return number + (number == "1" ? " degree" : " degrees");
   };
-  const std::string bend = fmt::format("half of the edges bend by at most {}, 5 % by at least {}",
+  const std::string bend = fmt::format("angle between neighboring faces: median {}, 95th percentile {}",
                                        degrees(advice.median_bend), degrees(advice.sharp_bend));
   if (advice.exact_first)
     return fmt::format("--method exact for a few maps, {} for many ({})", to_string(advice.method), bend);

@@ -48,9 +48,8 @@ void comment_on_statuses(const std::vector<Status>& status, const std::string& i
   const auto count = [&](Status s) { return std::count(status.begin(), status.end(), s); };
   const auto total = static_cast<double>(status.size());
   if (const auto apart = count(Status::disconnected); static_cast<double>(apart) > 0.1 * total)
-    journal.add_warning(
-        fmt::format("{:.0f} % of the vertices are not connected to the source; 'ahm info {}' lists the components",
-                    100.0 * static_cast<double>(apart) / total, input));
+    journal.add_warning(fmt::format("{} of {} are not connected to the source; 'ahm info {}' lists the components",
+                                    apart, counted(status.size(), "vertex"), input));
   if (const auto unreached = count(Status::unreached); unreached > 0)
     journal.add_warning(fmt::format(
         "vertices that no heat reaches: {}; with --strategy global they are too far away (use --strategy march), "
@@ -86,7 +85,7 @@ void comment_on_quality(const std::vector<double>& quality, std::string_view adv
   if (5 * poor <= mapped) return;
   journal.add_warning(fmt::format(
       "the map is not reliable at {:.0f} % of the mapped vertices (quality below {}): they lie beyond a cut locus, in "
-      "folds, or where the mesh is too coarse; {}",
+      "folds, or where the sampling is too coarse or too noisy; {}",
       100.0 * static_cast<double>(poor) / static_cast<double>(mapped), reliable_quality, advice));
 }
 

@@ -51,6 +51,7 @@ std::string parts_text(const Survey& s) {
   double total = 0;
   for (Index size : sizes) total += size;
   const std::string at = s.as_cloud ? fmt::format(" at k = {}", figure<std::int64_t>(*s.surface, "k")) : "";
+  if (sizes.size() == 1) return fmt::format("1{}, with {}", at, counted(sizes[0], "vertex"));
   return fmt::format("{}{}; the largest has {} ({:.1f} % of the vertices of all components)", sizes.size(), at,
                      counted(sizes[0], "vertex"), 100.0 * sizes[0] / total);
 }
@@ -124,12 +125,13 @@ std::string repair_text(const RepairSurvey& repair, const TopologyReport& t) {
   };
   const std::string done =
       counts_text({{c.welded, noun_after(c.welded, "vertex") + " joined"},
-                   {c.repeated_corners, faces(c.repeated_corners, "", "with repeated corners mended")},
+                   {c.repeated_corners, faces(c.repeated_corners, "", "cleared of repeated corners")},
                    {c.degenerate, faces(c.degenerate, "degenerate ", "dropped")},
                    {c.not_finite, faces(c.not_finite, "", "with non-finite vertices dropped")},
                    {c.duplicates, faces(c.duplicates, "duplicate ", "dropped")},
                    {c.reversed, faces(c.reversed, "", "reversed")}});
-  return fmt::format("--repair: {}; result: {}", c.any() ? done : "only cuts", counted(repair.parts, "part"));
+  return fmt::format("--repair: {}; result: {}", c.any() ? done : "mesh cut where it is nonmanifold",
+                     counted(repair.parts, "part"));
 }
 
 std::string mesh_text(const Survey& s) {

@@ -17,8 +17,8 @@ struct Sentence {
 
 constexpr Sentence sentences[] = {
     // files
-    {"goes_on_after_faces", "the file continues after the last face; the rest is ignored"},
-    {"goes_on_after_elements", "the file continues after the last element; the rest is ignored"},
+    {"data_after_faces", "the file continues after the last face; the rest is ignored"},
+    {"data_after_elements", "the file continues after the last element; the rest is ignored"},
     {"element_ignored", "element '{4}' is ignored"},
     {"list_ignored", "list '{4}' of the vertices is ignored"},
     {"bytes_ignored", "{0:.0f} [byte|bytes] per point without a description [is|are] ignored"},
@@ -33,10 +33,10 @@ constexpr Sentence sentences[] = {
     {"lines_ignored", "{0:.0f} [set|sets] of lines [is|are] ignored"},
     {"column_ignored", "column '{4}' is ignored: it contains text that is not a number"},
     {"columns_unnamed",
-     "columns {0:.0f} to {1:.0f} have no names; those of numbers are kept as column_{0:.0f} to column_{1:.0f}"},
+     "columns without names, from {0:.0f} to {1:.0f}: those of numbers are kept as column_{0:.0f} to column_{1:.0f}"},
     // meshes
     {"welded", "{0:.0f} [vertex was|vertices were] joined to another vertex within the distance of --weld"},
-    {"repeated_corners", "{0:.0f} [face|faces] lost repeated corners"},
+    {"repeated_corners", "repeated corners were removed from {0:.0f} [face|faces]"},
     {"degenerate_dropped",
      "{0:.0f} [face|faces] with fewer than three vertices or a repeated vertex [was|were] dropped"},
     {"not_finite_dropped", "{0:.0f} [face|faces] with a vertex that is not finite [was|were] dropped"},

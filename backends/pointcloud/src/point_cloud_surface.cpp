@@ -11,8 +11,8 @@
 
 #include "ahm/error.hpp"
 #include "ahm/graph/components.hpp"
+#include "ahm/surface/detail/gluing.hpp"
 #include "ahm/surface/directions.hpp"
-#include "ahm/surface/gluing.hpp"
 #include "ahm/util/parallel.hpp"
 #include "ahm/util/stopwatch.hpp"
 #include "ahm/util/text.hpp"

@@ -8,7 +8,7 @@
 #include <optional>
 #include <tuple>
 
-#include "ahm/surface/gluing.hpp"
+#include "ahm/surface/detail/gluing.hpp"
 #include "ahm/util/small_math.hpp"
 #include "ahm/util/vec.hpp"
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <utility>
 
-#include "ahm/surface/half_edges.hpp"
+#include "ahm/surface/detail/half_edges.hpp"
 #include "ahm/util/buckets.hpp"
 #include "ahm/util/parallel.hpp"
 #include "ahm/util/unset_vector.hpp"

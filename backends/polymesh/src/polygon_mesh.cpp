@@ -4,7 +4,7 @@
 #include <string>
 
 #include "ahm/error.hpp"
-#include "ahm/surface/gluing.hpp"
+#include "ahm/surface/detail/gluing.hpp"
 #include "ahm/util/disjoint_sets.hpp"
 #include "polygon.hpp"
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "ahm/error.hpp"
+#include "ahm/surface/detail/unfolded_corners.hpp"
 #include "ahm/surface/directions.hpp"
 #include "ahm/surface/exact/flat_triangles.hpp"
 #include "ahm/surface/surface_triangles.hpp"
@@ -302,7 +303,7 @@ FlatTriangles PolygonMeshSurface::flat_triangles() const {
     throw InvalidGeometry("collinear_faces",
                           "exact geodesics need faces with an area; " +
                               faces_that_are("collinear, all corners on one line", impl_->details.collinear),
-                          "remove them, or map by heat");
+                          "remove such faces, or map by heat");
   if (!impl_->details.twisted.empty())
     throw InvalidArgument("no_flat_triangles",
                           "exact geodesics need flat faces; " + faces_that_are("twisted", impl_->details.twisted),

@@ -45,9 +45,8 @@ class Means final : public LocalFeature {
     for (const std::string& file : files) {
       columns_.emplace_back(file);
       if (columns_.back().size() != graph.manifest().points)
-        throw InvalidArgument("'" + file + "' has " + std::to_string(columns_.back().size()) +
-                              " value(s); the input of the tiles has " +
-                              detail::counted(graph.manifest().points, "row"));
+        throw InvalidArgument("'" + file + "' has " + detail::counted(columns_.back().size(), "value") +
+                              "; the input of the tiles has " + detail::counted(graph.manifest().points, "row"));
     }
   }
   std::uint64_t identity(std::size_t tile) const override {

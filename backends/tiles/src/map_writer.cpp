@@ -124,7 +124,7 @@ void MapWriter::resume_from(const MarchState& state, std::int64_t ok, double far
   }
 }
 
-void MapWriter::put(Index vertex, const MapRow& row) {
+void MapWriter::add(Index vertex, const MapRow& row) {
   const std::size_t number = graph_.tile_of(vertex);
   MapTile& tile = open(number);
   const auto i = static_cast<std::size_t>(vertex - graph_.first_vertex(number));

@@ -54,7 +54,7 @@ class MapWriter final : public MapSink {
   void remove_own_files();
   /// Resumes from the files of own tiles. Keeps the rows that the march had accepted in this state, and clears all later ones.
   void resume_from(const MarchState& state, std::int64_t ok, double farthest);
-  void put(Index vertex, const MapRow& row) override;
+  void add(Index vertex, const MapRow& row) override;
   /// Writes all tiles that are in memory.
   void save();
   /// Sets the status of the vertices that the march did not reach.

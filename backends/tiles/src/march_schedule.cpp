@@ -47,7 +47,7 @@ std::vector<int> deal_tiles(std::span<const Index> first, Deal deal, int ranks, 
   if (deal != Deal::arrival) return owner;
   if (distances.size() != tiles)
     throw InvalidArgument("expected one distance per tile, found " + std::to_string(distances.size()) + " for " +
-                          std::to_string(tiles) + " tile(s)");
+                          detail::counted(tiles, "tile"));
   std::vector<std::size_t> order(tiles);
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return distances[a] < distances[b]; });

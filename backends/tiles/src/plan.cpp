@@ -49,10 +49,10 @@ double survey(io::PointStream& stream, Manifest& m) {
   });
   m.non_finite = m.points - finite;
   if (m.non_finite > 0 && !m.options.drop_non_finite)
-    throw InvalidGeometry("non_finite", std::to_string(m.non_finite) + " non-finite point(s) in the file",
+    throw InvalidGeometry("non_finite", detail::counted(m.non_finite, "non-finite point") + " in the file",
                           "drop such points with drop_non_finite");
   if (finite < 3)
-    throw InvalidGeometry("the cloud has " + std::to_string(finite) + " finite point(s); at least 3 are required");
+    throw InvalidGeometry("the cloud has " + detail::counted(finite, "finite point") + "; at least 3 are required");
   return largest;
 }
 
@@ -115,7 +115,7 @@ class Cutter {
       XXH3_64bits_reset(&parts_[t].hash);
     }
   }
-  void put(std::size_t tile, const CutPoint& point) {
+  void add(std::size_t tile, const CutPoint& point) {
     Part& part = parts_[tile];
     part.waiting.push_back(point);
     if (part.waiting.size() == 2048) flush(tile);
@@ -192,7 +192,7 @@ Manifest plan_tiles(const std::filesystem::path& input, const std::filesystem::p
   Cutter cutter(folder, begins.size() + 1);
   for_each_point(stream, [&](const Vec3& p, std::uint64_t row) {
     const auto tile = std::upper_bound(begins.begin(), begins.end(), p, pointcloud::before_on_curve) - begins.begin();
-    cutter.put(static_cast<std::size_t>(tile), {p, static_cast<std::int64_t>(row)});
+    cutter.add(static_cast<std::size_t>(tile), {p, static_cast<std::int64_t>(row)});
   });
   cutter.finish(m.tiles);
   m.write(folder);

@@ -22,7 +22,7 @@ void find_distances(const TiledGraph& graph, const Source& source, double radius
   Wavefront front(graph);
   front.add(source);
   front.run(radius, progress.stop);
-  for (Index i = 0; i < graph.size(); ++i) writer.put(i, {Status::ok, {}, front.distance(Vertex(i)), NAN});
+  for (Index i = 0; i < graph.size(); ++i) writer.add(i, {Status::ok, {}, front.distance(Vertex(i)), NAN});
   write_finished(folder, {{"identity", identity}});
 }
 

@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "ahm/progress.hpp"
-#include "ahm/surface/half_edges.hpp"
+#include "ahm/surface/detail/half_edges.hpp"
 #include "ahm/trimesh/triangle_mesh.hpp"
 #include "planar.hpp"
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "ahm/error.hpp"
-#include "ahm/surface/gluing.hpp"
+#include "ahm/surface/detail/gluing.hpp"
 #include "ahm/util/disjoint_sets.hpp"
 #include "ahm/util/text.hpp"
 #include "ahm/util/vec.hpp"

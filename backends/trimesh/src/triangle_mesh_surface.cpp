@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "ahm/error.hpp"
+#include "ahm/surface/detail/unfolded_corners.hpp"
 #include "ahm/surface/directions.hpp"
 #include "ahm/surface/exact/flat_triangles.hpp"
 #include "ahm/surface/surface_triangles.hpp"

@@ -15,21 +15,6 @@ using Eigen::Vector3d;
 
 constexpr std::size_t framing_sample = 200'000;
 
-/// A sample of about `framing_sample` points that determine the framing: the mapped points, or all points if none is mapped. Also all
-/// points of a mesh that is mostly mapped, to show the whole mesh.
-std::vector<Index> framed_points(const Scene& scene, const std::vector<Index>& shown, bool& is_local) {
-  std::vector<Index> mapped;
-  std::copy_if(shown.begin(), shown.end(), std::back_inserter(mapped),
-               [&](Index i) { return has_coordinate(scene, i); });
-  is_local = !mapped.empty() && 2 * mapped.size() < shown.size();
-  const bool all = mapped.empty() || (!is_local && !scene.face_vertices.empty());
-  const std::vector<Index>& from = all ? shown : mapped;
-  const std::size_t stride = from.size() / framing_sample + 1;
-  std::vector<Index> sample;
-  for (std::size_t k = 0; k < from.size(); k += stride) sample.push_back(from[k]);
-  return sample;
-}
-
 struct Range {
   double low, high;
 };
@@ -56,6 +41,29 @@ Eigen::AlignedBox3d robust_box(const Scene& scene, const std::vector<Index>& poi
     high[k] = range.high;
   }
   return {low, high};
+}
+
+/// About `framing_sample` of the points.
+std::vector<Index> sampled(const std::vector<Index>& points) {
+  const std::size_t stride = points.size() / framing_sample + 1;
+  std::vector<Index> sample;
+  for (std::size_t k = 0; k < points.size(); k += stride) sample.push_back(points[k]);
+  return sample;
+}
+
+/// The points that determine the framing: the mapped points, or all points if none is mapped. Also all points of a mesh that is mostly
+/// mapped, to show the whole mesh.
+/// @param is_local  set to whether the mapped points are less than half of all, or extend less than half as far
+std::vector<Index> framed_points(const Scene& scene, const std::vector<Index>& shown, bool& is_local) {
+  std::vector<Index> mapped;
+  std::copy_if(shown.begin(), shown.end(), std::back_inserter(mapped),
+               [&](Index i) { return has_coordinate(scene, i); });
+  const std::vector<Index> all = sampled(shown), some = sampled(mapped);
+  const auto extent = [&](const std::vector<Index>& points) {
+    return robust_box(scene, points, Eigen::Matrix3d::Identity()).diagonal().stableNorm();
+  };
+  is_local = !mapped.empty() && (2 * mapped.size() < shown.size() || 2 * extent(some) < extent(all));
+  return mapped.empty() || (!is_local && !scene.face_vertices.empty()) ? all : some;
 }
 
 /// z for objects that are flat in z (terrain, rooms) and for scans that are tall in z (trees, masts), else y. The threshold is stricter

@@ -1,5 +1,5 @@
 // Gluing of faces, numbering of vertices, and contraction of edges without length.
-#include "ahm/surface/gluing.hpp"
+#include "ahm/surface/detail/gluing.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -80,7 +80,7 @@ class Gluer {
       list.add("face " + std::to_string(later) + " repeats face " + std::to_string(earlier));
     throw InvalidGeometry("duplicate_faces",
                           detail::counted(list.count(), "face", "have") + " a duplicate: " + list.text(),
-                          "remove them");
+                          "remove such faces");
   }
 
   void refuse_nonmanifold_edges() const {
@@ -88,7 +88,7 @@ class Gluer {
       throw InvalidGeometry("non_manifold_edges",
                             detail::counted(nonmanifold_edges_.count(), "edge", "have") +
                                 " more than two faces: " + nonmanifold_edges_.text(),
-                            "repair them, or cut the mesh there with NonManifold::split");
+                            "repair the mesh, or cut it there with NonManifold::split");
   }
 
   /// Reverses faces until neighbors agree, one component at a time.
@@ -255,8 +255,8 @@ Gluing glue(Index vertices, const FaceList& faces, NonManifold non_manifold,
   const FaceFaults faults = find_faults(vertices, faces);
   refuse("vertices_outside", faults.outside, faces, "have", "a vertex outside [0, " + std::to_string(vertices) + ")",
          "number vertices from 0");
-  refuse("small_faces", faults.small, faces, "have", "fewer than 3 corners", "remove them");
-  refuse("repeated_vertices", faults.repeating, faces, "use", "a vertex twice", "remove them");
+  refuse("small_faces", faults.small, faces, "have", "fewer than 3 corners", "remove such faces");
+  refuse("repeated_vertices", faults.repeating, faces, "use", "a vertex twice", "remove such faces");
   Gluer gluer(vertices, faces);
   gluer.pair_sides();
   gluer.refuse_duplicates();
@@ -386,7 +386,7 @@ void GluedMesh::number_vertices(NonManifold non_manifold) {
     throw InvalidGeometry("non_manifold_vertices",
                           detail::counted(fans.pinched.count(), "vertex", "join") +
                               " several fans of faces (bow ties): " + fans.pinched.text(),
-                          "repair them, or split them with NonManifold::split");
+                          "repair the mesh, or split it there with NonManifold::split");
   std::vector<Index> vertex_of_fan(fans.corner.size(), -1);
   auto number = [&](Index fan, Index input) {
     vertex_of_fan[fan] = vertex_count();

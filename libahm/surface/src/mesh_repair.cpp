@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "ahm/error.hpp"
+#include "ahm/surface/detail/gluing.hpp"
 #include "ahm/surface/exact/flat_triangles.hpp"
-#include "ahm/surface/gluing.hpp"
 #include "ahm/util/disjoint_sets.hpp"
 #include "ahm/util/small_math.hpp"
 #include "ahm/util/text.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "ahm/surface/gluing.hpp"
+#include "ahm/surface/detail/gluing.hpp"
 #include "ahm/util/disjoint_sets.hpp"
 
 namespace ahm {

@@ -8,6 +8,7 @@
 
 #include "ahm/error.hpp"
 #include "ahm/graph/components.hpp"
+#include "ahm/surface/detail/unfolded_corners.hpp"
 #include "ahm/surface/exact/flat_triangles.hpp"
 #include "ahm/util/small_math.hpp"
 #include "ahm/util/text.hpp"

@@ -85,7 +85,8 @@ TEST(HeatOperators, ReportLostHeatBeforeB) {
           const HeatOperators heat(graph, {.t_coef = t_coef, .threads = threads});
           ADD_FAILURE() << side << ", " << t_coef;
         } catch (const NotPositiveDefinite& error) {
-          EXPECT_TRUE(error.fault() == "heat_lost" || std::string(error.what()).find(" A ") != std::string::npos)
+          EXPECT_TRUE(error.fault() == "heat_not_conserved" ||
+                      std::string(error.what()).find(" A ") != std::string::npos)
               << error.what();
         }
   }

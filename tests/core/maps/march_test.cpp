@@ -167,9 +167,9 @@ std::string fault(const CsrGraphData& data, const HeatOptions& options, Index so
 
 TEST(March, RefusesLongDiffusionTimesAsTheGlobalSolveOnAnyNumberOfThreads) {
   const CsrGraphData data = sphere_graph(20000);
-  EXPECT_EQ(fault(data, {.t_coef = 1e14, .strategy = Strategy::global, .threads = 1}, 0), "heat_lost");
+  EXPECT_EQ(fault(data, {.t_coef = 1e14, .strategy = Strategy::global, .threads = 1}, 0), "heat_not_conserved");
   for (const unsigned threads : {1u, 2u, 4u})
-    EXPECT_EQ(fault(data, {.t_coef = 1e14, .strategy = Strategy::march, .threads = threads}, 0), "heat_lost")
+    EXPECT_EQ(fault(data, {.t_coef = 1e14, .strategy = Strategy::march, .threads = threads}, 0), "heat_not_conserved")
         << threads;
 }
 
@@ -192,7 +192,7 @@ TEST(March, RefusesBandsThatAreTooThinOnAnyNumberOfThreads) {
     }
     for (const unsigned threads : {1u, 2u, 3u}) {
       const HeatOptions options{.t_coef = halves.t_coef, .strategy = Strategy::march, .threads = threads};
-      EXPECT_EQ(fault(data, options, 1), "heat_lost") << threads;
+      EXPECT_EQ(fault(data, options, 1), "heat_not_conserved") << threads;
     }
   }
 }
@@ -287,7 +287,7 @@ struct StoredRows final : MapSink {
         phi(count.size() * d),
         distance(count.size()),
         spread(count.size()) {}
-  void put(Index vertex, const MapRow& row) override {
+  void add(Index vertex, const MapRow& row) override {
     ++count[vertex];
     status[vertex] = row.status;
     std::ranges::copy(row.coordinates, phi.begin() + static_cast<std::ptrdiff_t>(vertex * d));

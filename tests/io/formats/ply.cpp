@@ -72,9 +72,9 @@ void add_good(Cases& c) {
   c.good("camera.ply",
          "ply\nformat ascii 1.0\nelement camera 1\nproperty list uchar int of\nelement vertex 1\n" + xyz +
              "element more 2\nproperty int a\nend_header\n3 1 2 3\n1 2 3\n7\n8\nand more\n",
-         "1 2 3; element_ignored camera; element_ignored more; goes_on_after_elements");
+         "1 2 3; element_ignored camera; element_ignored more; data_after_elements");
   c.good("none.ply", text_header("0"), "");
-  c.good("more.ply", text_header("1") + "1 2 3\n4 5 6\n", "1 2 3; goes_on_after_elements");
+  c.good("more.ply", text_header("1") + "1 2 3\n4 5 6\n", "1 2 3; data_after_elements");
   c.good("strips.ply",
          text_header("5", "element tristrips 1\nproperty list int int vertex_indices\n") + triangle +
              "1 1 0\n2 2 0\n8 0 1 2 3 -1 2 3 4\n",

@@ -46,8 +46,6 @@
 #include "ahm/surface/exact/flat_triangles.hpp"
 #include "ahm/surface/exact/geodesic_path.hpp"
 #include "ahm/surface/exact/polyhedral_surface.hpp"
-#include "ahm/surface/gluing.hpp"
-#include "ahm/surface/half_edges.hpp"
 #include "ahm/surface/mesh_repair.hpp"
 #include "ahm/surface/mesh_topology.hpp"
 #include "ahm/surface/polar_map_solver.hpp"

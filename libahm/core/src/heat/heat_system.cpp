@@ -19,8 +19,9 @@
 namespace ahm {
 namespace {
 
-/// Assembles the upper triangles of A and B column by column. Column i has an entry for each edge of star i to a smaller vertex, and
-/// the diagonal.
+/// Assembles the upper triangles of A, from the scalar Laplacian L, and of B, from the connection Laplacian L^nabla, column by column.
+/// No edge leaves the graph, so the boundary conditions are natural (Neumann). Column i has an entry for each edge of star i to a smaller
+/// vertex, and the diagonal.
 class ColumnWriter {
  public:
   ColumnWriter(const TangentGraph& graph, std::span<const double> tau, double scaling)
@@ -258,7 +259,7 @@ double conservation_residual(const HeatSystem& system, const TangentGraph& graph
 
 void check_conservation(double lost) {
   if (!(lost <= max_heat_loss))
-    throw NotPositiveDefinite("heat_lost",
+    throw NotPositiveDefinite("heat_not_conserved",
                               "the diffusion loses heat (relative loss " + detail::number(lost) +
                                   "): its time is too long, or the sizes of faces and edges differ too much",
                               "use a smaller t_coef");

@@ -1,5 +1,5 @@
 /// \file
-/// The matrices c (M + tau L) and c (M + tau L^nabla) of a graph.
+/// The matrices c (M + tau L) and c (M + tau L^nabla) of a graph, with the scalar Laplacian L and the connection Laplacian L^nabla.
 #pragma once
 
 #include <memory>

@@ -173,7 +173,7 @@ void AffineHeat::solve() {
     double* right_side = unknown_.data() + s * n_ * d_;
     const FrameField U = frames(s);
     detail::for_each_index(n_, threads_, [&](std::size_t i) {
-      system_.put(U, static_cast<Index>(i), std::span(rho).subspan((s * n_ + i) * d_, d_), right_side, n_);
+      system_.set_right_side(U, static_cast<Index>(i), std::span(rho).subspan((s * n_ + i) * d_, d_), right_side, n_);
     });
     for (std::size_t k = 0; k < rhs_[s].vertices.size(); ++k)
       for (std::size_t a = 0; a < d_; ++a)
@@ -209,7 +209,7 @@ void AffineHeat::solve_squares() {
         }
         std::fill(pairs.span().begin(), pairs.span().end(), 0.0);
         system_.add_pairs(star, factors, values, pairs.data());
-        squares_[s * n_ + i] = system_.paired(frames(s), static_cast<Index>(i), pairs.span()) - squares;
+        squares_[s * n_ + i] = system_.sum_of_pairs(frames(s), static_cast<Index>(i), pairs.span()) - squares;
       }
     }
   });
@@ -219,7 +219,7 @@ void AffineHeat::solve_squares() {
       double& entry = squares_[s * n_ + static_cast<std::size_t>(in.vertices[k])];
       entry += in.squares[k];
       if (!in.pairs.empty())
-        entry += system_.paired(frames(s), in.vertices[k], std::span(in.pairs).subspan(k * d_ * d_, d_ * d_));
+        entry += system_.sum_of_pairs(frames(s), in.vertices[k], std::span(in.pairs).subspan(k * d_ * d_, d_ * d_));
     }
   }
   operators_.solve_scalar(squares_, static_cast<Index>(rhs_.size()), threads_);

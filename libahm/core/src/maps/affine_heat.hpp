@@ -64,8 +64,8 @@ struct RightHandSide {
   std::vector<double> values;        ///< right-hand side of the variant's system; d numbers
   std::vector<double> translations;  ///< contribution to rho, and so to every variant; d numbers in the vertex's frame
   std::vector<double> squares;       ///< b |z|^2: right-hand side of the second moment q
-  std::vector<double> pairs;         ///< contribution to q before U is applied (`VariantSystem::paired`); d x d numbers
-  std::vector<double> lengths;       ///< right-hand side of the second moment p; empty: `squares`
+  std::vector<double> pairs;  ///< contribution to q before U is applied (`VariantSystem::sum_of_pairs`); d x d numbers
+  std::vector<double> lengths;  ///< right-hand side of the second moment p; empty: `squares`
 };
 
 /// @throws InvalidArgument when the source does not fit the graph

@@ -42,7 +42,7 @@ void KnownValues::take_values(Index number, Index place, const AffineHeat& heat,
   exponents_[number]->frame = frame_exponent;
 }
 
-void KnownValues::put(Index number, std::span<const double> row, HeatExponents exponents) {
+void KnownValues::set(Index number, std::span<const double> row, HeatExponents exponents) {
   rows_.grow_to(number + 1);
   exponents_.grow_to(number + 1);
   std::copy(row.begin(), row.end(), rows_[number]);

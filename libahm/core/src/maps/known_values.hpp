@@ -136,7 +136,7 @@ class KnownValues {
   std::span<const double> row(Index number) const { return {rows_[number], row_width()}; }
   HeatExponents exponents(Index number) const { return *exponents_[number]; }
   std::size_t row_width() const { return 3 + 2 * d_ + width_; }
-  void put(Index number, std::span<const double> row, HeatExponents exponents);
+  void set(Index number, std::span<const double> row, HeatExponents exponents);
 
   double heat(Index number) const { return *rows_[number]; }
   std::size_t bytes() const { return rows_.bytes() + exponents_.bytes(); }

@@ -49,7 +49,7 @@ void March::restore(const MarchState& state) {
     state_of(state.vertices[k]).accepted = true;
     const Index number = numbers_.find(state.vertices[k]);
     const auto row = std::span(state.values).subspan(k * width, width);
-    known_.put(number, row.first(known), state.exponents[k]);
+    known_.set(number, row.first(known), state.exponents[k]);
     found_.grow_to(number + 1);
     std::copy_n(row.begin() + static_cast<std::ptrdiff_t>(known), d_ + 2, found_[number]);
   }

@@ -227,7 +227,7 @@ enum class MarchGoal {
 /// Solves for a log map of one source, band after band (docs/concepts/march.md).
 class March {
  public:
-  /// @param options  accuracy, ordering, kind of factorization; the graph must have been checked
+  /// @param options  accuracy, ordering, threads; the graph must have been checked
   /// @param scales   must outlive this object
   /// @param sink     null: the march stores all results, and the accessors below return them. Otherwise `sink` receives each result, and
   ///                 the march frees it when the front has passed the vertex, so that memory is proportional to the front

@@ -71,7 +71,7 @@ class Rows final : public MarchSink, public KnownDistances {
       std::fill(phi_.begin(), phi_.end(), NAN);
       row.distance = row.spread = NAN;
     }
-    sink_.put(vertex, {row.status, phi_, row.distance, row.spread});
+    sink_.add(vertex, {row.status, phi_, row.distance, row.spread});
   }
 
  private:

@@ -123,7 +123,9 @@ class ObjReader {
     for (double& value : result) {
       const std::string_view word = next_word(rest);
       if (word.empty())
-        fail_at_line(in_, statements_.line(), in_quotes(statements_.text()) + " must have three numbers");
+        fail_at_line(in_, statements_.line(),
+                     "expected 3 numbers, found " + std::to_string(&value - result.data()) + ": " +
+                         in_quotes(statements_.text()));
       value = real_or_fail(in_, statements_.line(), word);
     }
     return result;

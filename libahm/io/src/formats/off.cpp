@@ -163,7 +163,7 @@ Geometry read(const Input& in) {
   const OffHeader header = parse_header(in, words);
   read_vertices(in, words, header, g);
   read_faces(in, words, header, g);
-  if (!words.at_end()) g.warnings.push_back({"goes_on_after_faces", {}, {}});
+  if (!words.at_end()) g.warnings.push_back({"data_after_faces", {}, {}});
   words.skipped().report(g.warnings);
   return g;
 }

@@ -347,7 +347,7 @@ Geometry read_elements(const Input& in, const PlyHeader& header, Body& body, con
       read_items(in, element, body, g);
     }
   }
-  if (!body.at_end()) g.warnings.push_back({"goes_on_after_elements", {}, {}});
+  if (!body.at_end()) g.warnings.push_back({"data_after_elements", {}, {}});
   body.skipped().report(g.warnings);
   return g;
 }

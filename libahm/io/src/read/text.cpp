@@ -148,7 +148,7 @@ double real_or_fail(const Input& in, std::int64_t line, std::string_view word) {
   if (const std::optional<double> value = to_real(word)) return *value;
   if (const std::string decimal = with_point(word); to_real(decimal))
     fail_at_line(in, line, in_quotes(word) + " is not a number: decimals take a point, as in " + in_quotes(decimal));
-  fail_at_line(in, line, in_quotes(word) + " is not a number in the range of double precision");
+  fail_at_line(in, line, in_quotes(word) + " is not a finite number in double precision");
 }
 
 std::int64_t whole_or_fail(const Input& in, std::int64_t line, std::string_view word) {

@@ -104,8 +104,8 @@ class Joiner {
 
  private:
   void ignore(const std::string& name) {
-    const auto told = [&](const Warning& w) { return w.id == "element_ignored" && w.name == name; };
-    if (std::ranges::none_of(g_.warnings, told)) g_.warnings.push_back({"element_ignored", {}, {}, name});
+    const auto is_reported = [&](const Warning& w) { return w.id == "element_ignored" && w.name == name; };
+    if (std::ranges::none_of(g_.warnings, is_reported)) g_.warnings.push_back({"element_ignored", {}, {}, name});
   }
 
   bool of_first(const VtkArray& array) const { return find(pieces_.front(), array.name) != nullptr; }

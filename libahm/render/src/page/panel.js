@@ -65,7 +65,7 @@ Ahm.Panel = class {
   set_ring() {
     const stage = this.stage, width = (this.base_ring || 1) * Math.pow(2, Number(this.element("ring").value));
     stage.set_ring(width);
-    this.element("ring_name").textContent = stage.field === "grid" ? "squares" : "rings";
+    this.element("ring_name").textContent = stage.field === "grid" ? "square width" : "ring width";
     this.element("ring_text").textContent = Ahm.number(this.length_of(width), 3);
     for (const id of ["axis_u", "axis_v"]) this.element(id).style.display = stage.has_wheel() ? "" : "none";
     this.label_bar(width);

@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "ahm/surface/gluing.hpp"
+#include "ahm/surface/detail/gluing.hpp"
 #include "ahm/types.hpp"
 
 namespace ahm::polymesh {

@@ -13,7 +13,7 @@
 #include <span>
 #include <vector>
 
-#include "ahm/surface/gluing.hpp"
+#include "ahm/surface/detail/gluing.hpp"
 #include "ahm/types.hpp"
 
 namespace ahm::trimesh {

@@ -24,8 +24,8 @@ struct Star {
   std::span<const Index> neighbors;  ///< j, one per edge
   std::span<const double> weights;   ///< w_ij = w_ji
   std::span<const double> logs;      ///< e_ij, position of j in frame i; degree x d
-  std::span<const double>
-      transports;  ///< R_ji: components in frame j -> components in frame i; degree x 2 or degree x d*d
+  /// R_ji: components in frame j -> components in frame i; degree x 2 or degree x d*d
+  std::span<const double> transports;
 
   std::size_t degree() const { return neighbors.size(); }
   /// Edge logarithm e_ij of edge number `edge`, d numbers.

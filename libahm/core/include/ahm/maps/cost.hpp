@@ -44,7 +44,7 @@ Cost estimate_cost(const GraphSize& size, Strategy strategy, unsigned threads = 
 /// On clouds, where distances are not unfolded, the cost of a march within a radius is uncertain. The march continues while the vectors
 /// computed by heat are shorter than the radius, and noise makes them too short. The estimate assumes vectors of the right length. The
 /// march never costs more than without a radius.
-/// @param options  t_coef, accuracy, ordering, kind of factorization
+/// @param options  t_coef, accuracy, ordering, memory; the strategy is that of `strategy`
 /// @param radius   radius of a march, world units; > 0
 /// @throws InvalidArgument (automatic; d is not 2; a source that does not fit the graph; radius, t_coef, accuracy)
 Cost estimate_cost(const TangentGraph& graph, const Source& source, Strategy strategy, const HeatOptions& options = {},

@@ -42,6 +42,7 @@ class LogMapSolver {
   /// @param graph  must outlive the solver
   /// @throws as `HeatOperators`; InvalidArgument (accuracy, expected_maps)
   explicit LogMapSolver(const TangentGraph& graph, const HeatOptions& options = {});
+  /// Not available: a temporary graph would not outlive the solver.
   explicit LogMapSolver(const TangentGraph&&, const HeatOptions& = {}) = delete;
   ~LogMapSolver();
   LogMapSolver(LogMapSolver&&) noexcept;
@@ -55,7 +56,8 @@ class LogMapSolver {
   LogMap solve(const Source& source, const MapOptions& options = {}) const;
 
   /// The log maps of many sources, in their order. The strategy `global` solves blocks of up to 16 right-hand sides. The bits of a map depend
-  /// on the list of sources and not on the number of threads; a map solved alone differs from it by rounding (1e-14 of the distance). The strategy `march` solves one map at a time on each thread.
+  /// on the list of sources and not on the number of threads; a map solved alone differs from it by rounding
+  /// (1e-14 of the distance). The strategy `march` solves one map at a time on each thread.
   /// @throws as for one source; ResourceExhausted before any map is computed, if the maps would exceed the memory
   std::vector<LogMap> solve(std::span<const Source> sources, const MapOptions& options = {}) const;
 

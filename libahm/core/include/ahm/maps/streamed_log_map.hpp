@@ -3,7 +3,7 @@
 ///
 /// \code
 /// struct Rows final : ahm::MapSink {
-///   void put(ahm::Index vertex, const ahm::MapRow& row) override { std::cout << vertex << ' ' << row.distance << '\n'; }
+///   void add(ahm::Index vertex, const ahm::MapRow& row) override { std::cout << vertex << ' ' << row.distance << '\n'; }
 /// } rows;
 /// ahm::stream_log_map(graph, ahm::Source::at_vertex(ahm::Vertex{0}), {}, rows);
 /// \endcode
@@ -40,7 +40,7 @@ class MapSink {
  public:
   virtual ~MapSink() = default;
   /// Called once for each vertex that the march reaches, from one thread, in the order of the march. `row` is valid during the call.
-  virtual void put(Index vertex, const MapRow& row) = 0;
+  virtual void add(Index vertex, const MapRow& row) = 0;
 };
 
 /// Computes the map of a `LogMapSolver` with strategy `march`, with the same bits. Vertices for which `sink` gets no row are beyond the

@@ -18,8 +18,8 @@ class Adaptive final : public VariantSystem {
   }
 
   UnknownLayout layout(std::size_t n, std::size_t) const override { return {1, n}; }
-  void put(const FrameField& U, Index vertex, std::span<const double> rho, double* right_side,
-           std::size_t n) const override {
+  void set_right_side(const FrameField& U, Index vertex, std::span<const double> rho, double* right_side,
+                      std::size_t n) const override {
     U.to_source(vertex, rho.data(), right_side + vertex, n);
   }
   void solve(const HeatOperators& operators, std::span<double> X, std::size_t sources,
@@ -33,7 +33,7 @@ class Adaptive final : public VariantSystem {
       for (std::size_t c = 0; c < d; ++c)
         for (std::size_t a = 0; a < d; ++a) pairs[c * d + a] += factors[k] * star.logs[k * d + c] * values[k * d + a];
   }
-  double paired(const FrameField& U, Index i, std::span<const double> pairs) const override {
+  double sum_of_pairs(const FrameField& U, Index i, std::span<const double> pairs) const override {
     Scratch axes(pairs.size());
     U.axes(i, axes.data());
     return dot(axes.span(), pairs);

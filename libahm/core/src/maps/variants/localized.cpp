@@ -25,8 +25,8 @@ class Localized final : public VariantSystem {
   }
 
   UnknownLayout layout(std::size_t, std::size_t d) const override { return {d, 1}; }
-  void put(const FrameField&, Index vertex, std::span<const double> rho, double* right_side,
-           std::size_t) const override {
+  void set_right_side(const FrameField&, Index vertex, std::span<const double> rho, double* right_side,
+                      std::size_t) const override {
     std::copy(rho.begin(), rho.end(), right_side + static_cast<std::size_t>(vertex) * rho.size());
   }
   void solve(const HeatOperators& operators, std::span<double> X, std::size_t sources,
@@ -42,7 +42,7 @@ class Localized final : public VariantSystem {
       pairs[0] += factors[k] * dot(star.log(k), seen.span());
     }
   }
-  double paired(const FrameField&, Index, std::span<const double> pairs) const override { return pairs[0]; }
+  double sum_of_pairs(const FrameField&, Index, std::span<const double> pairs) const override { return pairs[0]; }
   void radial(const FrameField&, Index vertex, std::span<const double> solution, std::size_t n,
               double* out) const override {
     const std::size_t d = solution.size() / n;

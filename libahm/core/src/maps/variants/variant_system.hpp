@@ -34,8 +34,8 @@ class VariantSystem {
   /// The positions of the components in the unknown.
   virtual UnknownLayout layout(std::size_t n, std::size_t d) const = 0;
   /// Writes rho of a vertex (Eq. 9, d numbers in its frame) to the right-hand side of one source.
-  virtual void put(const FrameField& U, Index vertex, std::span<const double> rho, double* right_side,
-                   std::size_t n) const = 0;
+  virtual void set_right_side(const FrameField& U, Index vertex, std::span<const double> rho, double* right_side,
+                              std::size_t n) const = 0;
   /// X <- solution, for all sources.
   virtual void solve(const HeatOperators& operators, std::span<double> X, std::size_t sources,
                      unsigned threads) const = 0;
@@ -45,7 +45,7 @@ class VariantSystem {
   virtual void add_pairs(const Star& star, std::span<const double> factors, std::span<const double> values,
                          double* pairs) const = 0;
   /// Second part: computes the sum from `pairs` and the frame of i.
-  virtual double paired(const FrameField& U, Index i, std::span<const double> pairs) const = 0;
+  virtual double sum_of_pairs(const FrameField& U, Index i, std::span<const double> pairs) const = 0;
   /// The unknown of a vertex as a vector in its own frame, d numbers.
   virtual void radial(const FrameField& U, Index vertex, std::span<const double> solution, std::size_t n,
                       double* out) const = 0;

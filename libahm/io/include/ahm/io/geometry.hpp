@@ -44,7 +44,7 @@ struct Geometry {
   std::vector<Index> face_vertices;        ///< vertex numbers, each in [0, n)
   std::string format;                      ///< for messages, e.g. "PLY binary little endian"
   /// Data that was ignored or interpreted. Identifiers, with their values and names in parentheses:
-  /// - goes_on_after_faces, goes_on_after_elements: the rest of the file is ignored
+  /// - data_after_faces, data_after_elements: the rest of the file is ignored
   /// - lines_skipped (number of lines that are not understood, number of the first one; its text in quotes)
   /// - no_end (name of the missing end): the file may be cut short
   /// - element_ignored (name of the element), list_ignored (name of a list of the vertices)

@@ -37,10 +37,12 @@ class PolarMapSolver {
  public:
   /// @throws ResourceExhausted
   explicit PolarMapSolver(const Surface& surface, const PolarSolverOptions& options = {});
+  /// Not available: a temporary surface would not outlive the solver.
   explicit PolarMapSolver(const Surface&&, const PolarSolverOptions& = {}) = delete;
   /// For a graph of dimension 2 without a surface. Its fronts start at the source.
   /// @throws InvalidArgument (dimension), ResourceExhausted
   explicit PolarMapSolver(const TangentGraph& graph, const PolarSolverOptions& options = {});
+  /// Not available: a temporary graph would not outlive the solver.
   explicit PolarMapSolver(const TangentGraph&&, const PolarSolverOptions& = {}) = delete;
 
   const TangentGraph& graph() const noexcept { return *graph_; }
@@ -63,8 +65,8 @@ class PolarMapSolver {
   const TangentGraph* graph_;
   const Surface* surface_ = nullptr;
   std::shared_ptr<const Wavefront::OneRings> one_rings_;
-  std::unique_ptr<const CsrGraph>
-      triangle_graph_;  ///< edges of the selected triangles, for clouds; null: those of the graph are used
+  /// Edges of the selected triangles, for clouds; null: the edges of the graph are used.
+  std::unique_ptr<const CsrGraph> triangle_graph_;
   std::shared_ptr<const Wavefront::OneRings> triangle_one_rings_;
   std::optional<ExactGeodesics> geodesics_;  ///< none: no flat triangles, or windows disabled
   Offset windows_ = 0;

@@ -59,7 +59,7 @@ class Location {
   std::variant<Vec3, SurfacePoint> place_;
 };
 
-/// The method that suits the surface: `Surface::suggested_method`.
+/// Options of the automatic choice of the method (`Surface::suggested_method`).
 struct AutomaticOptions {
   Index expected_maps = 0;  ///< for heat: the number of maps to be made; 0: many
   unsigned threads = 0;     ///< 0: one per core. No result depends on it
@@ -74,10 +74,10 @@ struct ExactSolverOptions {
 /// The method of a solver, with its options.
 using MethodOptions = std::variant<AutomaticOptions, PolarSolverOptions, HeatOptions, ExactSolverOptions>;
 
-/// What may differ from map to map.
+/// Options of `SurfaceSolver::log_map` and `log_maps`.
 struct SurfaceMapOptions {
-  std::optional<Vec3> u_axis =
-      {};  ///< a vector of space along which u runs, projected to the surface; as `Surface::source`
+  /// A vector of space along which u runs, projected to the surface; as `Surface::source`.
+  std::optional<Vec3> u_axis = {};
   /// Rows farther than this get `Status::beyond_radius`. World units; > 0.
   double radius = std::numeric_limits<double>::infinity();
   bool frames = true;  ///< keep the transported frames (`LogMap::frames`), which gradients and inverse maps need
@@ -104,11 +104,12 @@ class SurfaceSolver {
   /// @param surface  must outlive the solver
   /// @throws as `LogMapSolver`, `PolarMapSolver` or `ExactGeodesics`
   explicit SurfaceSolver(const Surface& surface, const MethodOptions& options = {});
+  /// Not available: a constant temporary would not outlive the solver. Pass a named surface, a `shared_ptr`, or move the surface.
   explicit SurfaceSolver(const Surface&&, const MethodOptions& = {}) = delete;
-  /// Shares the surface.
+  /// Shares the ownership of a surface.
   explicit SurfaceSolver(std::shared_ptr<const Surface> surface, const MethodOptions& options = {});
   // NOLINTBEGIN(bugprone-forwarding-reference-overload,bugprone-move-forwarding-reference): rvalues only
-  /// Keeps a surface that has no other owner.
+  /// Moves a surface into the solver.
   template <class S>
   requires(std::derived_from<S, Surface> &&
            !std::is_const_v<S>) explicit SurfaceSolver(S&& surface, const MethodOptions& options = {})

@@ -13,7 +13,7 @@
 #include <span>
 #include <vector>
 
-#include "ahm/surface/half_edges.hpp"
+#include "ahm/surface/detail/half_edges.hpp"
 #include "ahm/types.hpp"
 
 namespace ahm::exact {

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "ahm/surface/half_edges.hpp"
+#include "ahm/surface/detail/half_edges.hpp"
 #include "ahm/surface/mesh_topology.hpp"
 #include "ahm/surface/row_map.hpp"
 #include "ahm/types.hpp"
