@@ -18,19 +18,18 @@ int main() {
     }
 
   // One map from arrays.
-  const auto mesh = ahm::trimesh::TriangleMeshSurface::build(positions, faces);
-  const ahm::SurfaceLogMap map = ahm::log_map(mesh, 0);
-  std::printf("row %d lies at distance %.3f\n", n * n - 1, map.distance.back());
+  const auto mesh = ahm::trimesh::TriangleMeshSurface::build(positions, faces);  // or PointCloudSurface::build(points)
+  const ahm::SurfaceLogMap map = ahm::log_map(mesh, 0);                          // from row 0
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    if (map.status[i] == ahm::Status::ok) std::printf("%g %g %g\n", map.u[i], map.v[i], map.distance[i]);
 
   // Many maps.
-  const ahm::SurfaceSolver solver(mesh);
+  const ahm::SurfaceSolver solver(mesh);  // prepares once
   const std::vector<ahm::SurfaceLogMap> maps = solver.log_maps({0, 17, 333}, {.radius = 5});
 
-  // Distances from the nearest of several sources.
+  // Distances from the nearest of several sources, and a path.
   const std::vector<double> distance = solver.distance({0, 90});
-
-  // A path.
-  const ahm::SurfacePath path = solver.path(7, 90);
+  const ahm::SurfacePath path = solver.path(7, 90);  // path.points, path.length
   std::printf("%zu maps, distance %.3f, path %.3f\n", maps.size(), distance[5], path.length);
 
   // A graph of your own: points on a line.
@@ -41,7 +40,7 @@ int main() {
   line.logs = {1, -1, 1, -1};
   line.transports = {1, 1, 1, 1};
   line.masses = {0.5, 1, 0.5};
-  const ahm::CsrGraph graph(std::move(line));
+  const ahm::CsrGraph graph(std::move(line));  // ahm::CsrGraphData: arrays
   const ahm::LogMap on_line = ahm::LogMapSolver(graph).solve(ahm::Source::at_vertex(ahm::Vertex{0}));
   std::printf("on the line: %.3f\n", on_line.coordinates()[2]);
 

@@ -103,6 +103,21 @@ TEST_F(Html, ContainsEveryPointAndFace) {
   expect_counts(bundle(page(mesh.scene()), "map_data"), {{"uv", 121 * 2}});
 }
 
+/// Gradients are stored in bytes, 127 for zero.
+TEST_F(Html, ContainsTheGradientsOfEveryDisc) {
+  const std::string text = page(cloud.scene()), bytes = decoded(element(text, "map_data"));
+  const auto map = bundle(text, "map_data");
+  std::uint32_t length = 0;
+  std::memcpy(&length, bytes.data() + 4, sizeof length);
+  const std::size_t begin = 8 + length + map["arrays"]["slopes"]["at"].get<std::size_t>();
+  const double steepest = map["steepest"];
+  const auto slope = [&](std::size_t k) {
+    return steepest * (2.0 * static_cast<unsigned char>(bytes.at(begin + k)) - 254) / 255;
+  };
+  for (std::size_t k = 0; k < 6 * 121; k += 6)
+    for (std::size_t c = 0; c < 6; ++c) EXPECT_NEAR(slope(k + c), c == 0 || c == 4 ? 1 : 0, steepest * 2 / 255) << k;
+}
+
 TEST_F(Html, FramesTheMapBesideAMuchLargerPart) {
   const double alone = bundle(page(scene), "surface_data")["scale"];
   for (const Vec3& corner : {Vec3{0, 0, 0}, Vec3{1000, 0, 0}, Vec3{1000, 1000, 0}, Vec3{0, 1000, 0}}) {

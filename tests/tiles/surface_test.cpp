@@ -276,7 +276,7 @@ TEST_F(TilesProgramOnMeshes, MakesTilesMapsAndRows) {
   write_off("mesh.off", mesh);
   for (const std::string option : {"--k 60", "--drop-nan", "--ignore-normals"})
     expect_output("plan mesh.off -o tiles " + option, "--ignore-normals require a point cloud", 1);
-  expect_output("plan mesh.off -o tiles --tile-points 200", "tile(s), built");
+  expect_output("plan mesh.off -o tiles --tile-points 200", "tiles, built");
   expect_output("build tiles", "");
   expect_output("logmap tiles -o map --source 0", "");
   expect_output("rows tiles map -o map.csv", "");
