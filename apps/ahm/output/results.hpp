@@ -85,10 +85,10 @@ class Results {
   const io::Geometry& input_;
   std::string title_;
   unsigned threads_;
-  std::vector<Vec3> normals_;           ///< empty if no output contains normals
-  std::vector<Vec3> drawn_;             ///< `drawn_points`
+  std::vector<Vec3> normals_;  ///< empty if no output contains normals
+  std::vector<Vec3> drawn_;    ///< `drawn_points`
   bool is_cloud_;
-  RowFaces triangles_;                  ///< triangles between `drawn_`; empty: discs are drawn
+  RowFaces triangles_;  ///< triangles between `drawn_`; empty: discs are drawn
 };
 
 }  // namespace ahm::app
