@@ -72,8 +72,8 @@ Table convergence(const Settings& settings) {
   std::string orders;
   for (const NamedMethod& method : methods) {
     const Table rows = table.where("mesh", "icosphere").where("method", method.name);
-    orders += fmt::format("{}{} {:.2f} / {:.2f} / {:.2f}", orders.empty() ? "" : ", ", method.name,
-                          rows.mean("order L2"), rows.mean("order L2 inside"), rows.mean("order Linf"));
+    append(orders, fmt::format("{} {:.2f} / {:.2f} / {:.2f}", method.name, rows.mean("order L2"),
+                               rows.mean("order L2 inside"), rows.mean("order Linf")));
   }
   table.seen =
       "Fitted orders on icospheres, L2 whole / L2 within 0.85 pi / L-infinity on the hemisphere: " + orders + ".";

@@ -3,8 +3,7 @@
 
 #include <optional>
 
-#include "ahm/maps/log_map_solver.hpp"
-#include "ahm/surface/polar_map_solver.hpp"
+#include "ahm/surface/surface_solver.hpp"
 #include "experiments/comparison.hpp"
 #include "timing.hpp"
 
@@ -14,35 +13,17 @@ namespace {
 constexpr int source_count = 3;
 constexpr Index largest_mesh = 200'000;
 
-/// A solver of any of the three methods.
-class AnySolver {
- public:
-  AnySolver(Method method, const trimesh::TriangleMeshSurface& surface, unsigned threads) : threads_(threads) {
-    switch (method) {
-      case Method::polar:
-        polar_.emplace(surface, PolarSolverOptions{.threads = threads});
-        break;
-      case Method::heat:
-        heat_.emplace(surface.graph(), HeatOptions{.threads = threads});
-        break;
-      case Method::exact:
-        exact_.emplace(surface);
-        break;
-    }
+MethodOptions options_of(Method method, unsigned threads) {
+  switch (method) {
+    case Method::heat:
+      return HeatOptions{.threads = threads};
+    case Method::exact:
+      return ExactSolverOptions{.threads = threads};
+    case Method::polar:
+      break;
   }
-
-  LogMap log_map(Vertex source) const {
-    if (polar_) return polar_->log_map(source);
-    if (exact_) return exact_->log_map(source, {.progress = {}, .threads = threads_});
-    return heat_->solve(Source::at_vertex(source), {.threads = threads_});
-  }
-
- private:
-  unsigned threads_;
-  std::optional<PolarMapSolver> polar_;
-  std::optional<LogMapSolver> heat_;
-  std::optional<ExactGeodesics> exact_;
-};
+  return PolarSolverOptions{.threads = threads};
+}
 
 void measure(const NamedMesh& mesh, unsigned threads, Table& table) {
   const trimesh::MeshOptions options{.threads = threads};
@@ -55,20 +36,21 @@ void measure(const NamedMesh& mesh, unsigned threads, Table& table) {
     sources.emplace_back(surface->size() / 11 + s * (surface->size() / source_count));
     exact.push_back(geodesics.log_map(sources.back()));
   }
+  const auto row = [&](Vertex source) { return *surface->mesh().rows().row(source); };
   for (const Method method : {Method::polar, Method::heat, Method::exact}) {
-    std::optional<AnySolver> solver;
+    std::optional<SurfaceSolver> solver;
     std::vector<double> vectors;
-    const double prepare = min_seconds([&] { solver.emplace(method, surface->mesh(), threads); });
-    const double additional = min_seconds([&] { solver->log_map(sources.front()); });
+    const double prepare = min_seconds([&] { solver.emplace(surface->mesh(), options_of(method, threads)); });
+    const double additional = min_seconds([&] { solver->log_map(row(sources.front())); });
     for (std::size_t s = 0; s < sources.size(); ++s) {
-      const LogMap map = solver->log_map(sources[s]);
+      const LogMap map = solver->log_map(row(sources[s])).vertices;
       const std::vector<double> errors = vector_errors(*surface, exact[s], map);
       vectors.insert(vectors.end(), errors.begin(), errors.end());
     }
     solver.reset();
     const double memory = added_megabytes([&] {
       const Surface own(mesh.name, mesh, options);
-      AnySolver(method, own.mesh(), threads).log_map(sources.front());
+      SurfaceSolver(own.mesh(), options_of(method, threads)).log_map(row(sources.front()));
     });
     table.add({mesh.name, surface->size(), std::string(to_string(method)), build, prepare + additional, additional,
                known(memory), quantile(vectors, 0.5), quantile(vectors, 0.95)});

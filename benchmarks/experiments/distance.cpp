@@ -81,8 +81,7 @@ Table distance([[maybe_unused]] const Settings& settings) {
     auto at = [&](const char* ring) {
       return quantile(table.where("method", method.name).where("distance / longest", ring).numbers("median"), 0.5);
     };
-    table.seen += fmt::format("{}{} {:.4f} / {:.4f} / {:.4f}", table.seen.empty() ? "" : ", ", method.name, at("0.05"),
-                              at("0.15"), at("0.45"));
+    append(table.seen, fmt::format("{} {:.4f} / {:.4f} / {:.4f}", method.name, at("0.05"), at("0.15"), at("0.45")));
   }
   table.seen =
       "Relative error at 0.05 / 0.15 / 0.45 of the longest distance, median of the shapes: " + table.seen + ".";

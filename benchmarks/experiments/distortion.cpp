@@ -51,8 +51,8 @@ Table distortion(const Settings& settings) {
   };
   std::string found;
   for (const NamedMethod& method : log_map_methods())
-    found += fmt::format("{}{} {:.2f} / {:.1f}", found.empty() ? "" : ", ", method.name,
-                         over_all(method.name, "median D"), over_all(method.name, "95% D"));
+    append(found, fmt::format("{} {:.2f} / {:.1f}", method.name, over_all(method.name, "median D"),
+                              over_all(method.name, "95% D")));
   table.seen = fmt::format(
       "Median / 95 % of D, median of the shapes: {}. The exact log map of the sphere has {:.2f} / {:.1f}: less than "
       "that is no advantage.",

@@ -84,6 +84,9 @@ class Table {
   std::vector<std::vector<Cell>> rows_;
 };
 
+/// Appends an entry to a list: "a, b, c".
+void append(std::string& list, std::string_view entry);
+
 struct Experiment {
   std::string_view name;    ///< name of the command, the table and the plot
   std::string_view figure;  ///< figure of Soliman & Sharp 2025, or "scaling"

@@ -99,7 +99,7 @@ std::string section(const RunRecord& record, const Experiment& experiment, const
 std::string machine_line(const nlohmann::ordered_json& machine) {
   std::string text;
   for (const auto& [key, value] : machine.items())
-    text += (text.empty() ? "" : ", ") + key + " " + (value.is_string() ? value.get<std::string>() : value.dump());
+    append(text, key + " " + (value.is_string() ? value.get<std::string>() : value.dump()));
   return "<p class=\"small\">" + escaped(text) + "</p>\n";
 }
 

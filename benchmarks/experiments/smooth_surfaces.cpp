@@ -186,8 +186,8 @@ Table smooth_surfaces(const Settings& settings) {
   std::string orders;
   for (const NamedMap& method : maps) {
     const Table rows = table.where("method", method.name);
-    orders += fmt::format("{}{} {:.2f} / {:.2f}", orders.empty() ? "" : ", ", method.name, rows.smallest("order 50%"),
-                          rows.smallest("order 95%"));
+    append(orders,
+           fmt::format("{} {:.2f} / {:.2f}", method.name, rows.smallest("order 50%"), rows.smallest("order 95%")));
   }
   table.seen = "Lowest orders of the vectors over the surfaces, median / 95th percentile: " + orders + ".";
   return table;

@@ -50,6 +50,11 @@ std::string Cell::format(double number) {
   return fmt::format("{:.6g}", number);
 }
 
+void append(std::string& list, std::string_view entry) {
+  if (!list.empty()) list += ", ";
+  list += entry;
+}
+
 Table::Table(std::vector<std::string> columns) : columns_(std::move(columns)) {}
 
 void Table::add(std::vector<Cell> row) {

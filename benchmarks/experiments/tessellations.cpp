@@ -63,8 +63,7 @@ Table tessellations(const Settings& settings) {
   std::string means;
   for (const NamedMethod& method : log_map_methods()) {
     const Table rows = table.where("method", method.name);
-    means += fmt::format("{}{} {:.2f} / {:.2f}", means.empty() ? "" : ", ", method.name, rows.mean("rms"),
-                         rows.largest("rms"));
+    append(means, fmt::format("{} {:.2f} / {:.2f}", method.name, rows.mean("rms"), rows.largest("rms")));
   }
   table.seen = "Root mean square error on the spheres, radius 1, mean / worst of the meshes: " + means + ".";
   return table;

@@ -26,7 +26,8 @@ class Path(NamedTuple):
     complete: bool  #: False for a trace that ended at the boundary
 
     def __repr__(self) -> str:
-        return f"<ahm.Path: {arguments.counted(len(self.points), 'point')}, {self.length:.6g} long{'' if self.complete else ', to the boundary'}>"
+        end = "" if self.complete else ", to the boundary"
+        return f"<ahm.Path: {arguments.counted(len(self.points), 'point')}, {self.length:.6g} long{end}>"
 
 
 def geodesic_path(surface: SurfaceLike, stops: Sources, to: Optional[Source] = None, *, closed: bool = False, fast: bool = False,

@@ -148,8 +148,9 @@ class LogMapSolver(_Maker):
         sources : (k,) rows, (k, 3) positions, `(faces, barycentric)`, `(edges, t)`, or a list of any of these.
         frames : as in `log_map`, but False by default.
         spread : compute `LogMap.spread`, which `quality` requires. It takes a fifth of the time.
-        distances : compute `LogMap.distance`. If False, maps take a tenth of the time on small meshes to a half on large ones. Their distance is then the length
-            |uv|, or the straight-line distance in space if that is longer, and they have no spread.
+        distances : compute `LogMap.distance`. If False, maps take a tenth of the time on small meshes to a half on large ones.
+            Their distance is then the length |uv|, or the straight-line distance in space if that is longer, and they have no
+            spread.
 
         Other arguments and errors as in `log_map`.
 

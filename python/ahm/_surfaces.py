@@ -92,7 +92,8 @@ class Surface:
 
     @property
     def warnings(self) -> List[SurfaceWarning]:
-        """Problems of the file (`ahm.read`) and of the input: dictionaries with a sentence `text`, and `id`, `numbers`, `rows` and `name`.
+        """Problems of the file (`ahm.read`) and of the input: dictionaries with a sentence `text`, and `id`, `numbers`, `rows` and
+        `name`.
 
         The C++ header of each surface lists the ids."""
         return [*self._read_warnings, *self._body.warnings()]

@@ -139,7 +139,8 @@ class Atlas(NamedTuple):
     distortion: Dict[str, float]
 
     def __repr__(self) -> str:
-        return f"<ahm.Atlas: charts: {len(self.sources)}, {arguments.counted(len(self.points), 'point')}, {arguments.counted(len(self.faces), 'face')}>"
+        points, faces = arguments.counted(len(self.points), "point"), arguments.counted(len(self.faces), "face")
+        return f"<ahm.Atlas: charts: {len(self.sources)}, {points}, {faces}>"
 
 
 def atlas(solver: SurfaceLike, sources: Optional[Sources] = None, *, charts: int = 20, max_distortion: Optional[float] = None,

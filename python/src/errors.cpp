@@ -31,7 +31,7 @@ struct Advice {
 
 /// Remedies by fault, in terms of the Python package. They replace those of the C++ messages.
 constexpr Advice advices[] = {
-    {"collinear_faces", "remove such faces, or use method 'heat'"},
+    {"collinear_faces", "remove such faces, or use method 'polar' or 'heat'"},
     {"diffusion_time_range", "use a t_coef near 1"},
     {"map_without_frames", "make it with frames=True"},
     {"map_without_spread", "make it with spread=True and distances=True"},

@@ -58,12 +58,13 @@ std::vector<Index> framed_points(const Scene& scene, const std::vector<Index>& s
   std::vector<Index> mapped;
   std::copy_if(shown.begin(), shown.end(), std::back_inserter(mapped),
                [&](Index i) { return has_coordinate(scene, i); });
-  const std::vector<Index> all = sampled(shown), some = sampled(mapped);
   const auto extent = [&](const std::vector<Index>& points) {
-    return robust_box(scene, points, Eigen::Matrix3d::Identity()).diagonal().stableNorm();
+    return robust_box(scene, sampled(points), Eigen::Matrix3d::Identity()).diagonal().stableNorm();
   };
-  is_local = !mapped.empty() && (2 * mapped.size() < shown.size() || 2 * extent(some) < extent(all));
-  return mapped.empty() || (!is_local && !scene.face_vertices.empty()) ? all : some;
+  const bool is_partial = !mapped.empty() && mapped.size() < shown.size();
+  is_local = is_partial && (2 * mapped.size() < shown.size() || 2 * extent(mapped) < extent(shown));
+  const bool all = mapped.empty() || (!is_local && !scene.face_vertices.empty());
+  return sampled(all ? shown : mapped);
 }
 
 /// z for objects that are flat in z (terrain, rooms) and for scans that are tall in z (trees, masts), else y. The threshold is stricter
