@@ -50,7 +50,6 @@ nlohmann::ordered_json machine() {
           {"compiler", __VERSION__},
           {"ahm", AHM_VERSION},
           {"eigen", fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)},
-          {"cholmod", algebra.cholmod},
           {"blas", algebra.blas}};
 }
 

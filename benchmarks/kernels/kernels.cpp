@@ -15,7 +15,6 @@ int run_kernels(std::vector<std::string> options) {
   benchmark::Initialize(&argc, argv.data());
   if (benchmark::ReportUnrecognizedArguments(argc, argv.data())) return 1;
   const LinearAlgebraInfo info = linear_algebra_info();
-  benchmark::AddCustomContext("CHOLMOD", info.cholmod);
   benchmark::AddCustomContext("BLAS", info.blas);
   benchmark::RunSpecifiedBenchmarks();
   return 0;

@@ -56,7 +56,8 @@ Table cloud_scaling(const Settings& settings) {
                "additional localized s", "u and v only s", "batch of 64, s each", "batch of u and v only, s each",
                "factors MB", "peak MB", "peak MB with the batch", "ok"});
   for (Index n : sizes(settings, 1000, {10000, 100000, 400000}))
-    for (const auto& [name, ordering] : {std::pair{"amd", Ordering::amd}, {"metis", Ordering::nested_dissection}}) {
+    for (const auto& [name, ordering] :
+         {std::pair{"amd", Ordering::amd}, {"nested dissection", Ordering::nested_dissection}}) {
       std::vector<Cell> row{n, name};
       for (double number : in_own_process(13, [&] { return measure(n, ordering, settings); })) row.push_back(number);
       table.add(row);

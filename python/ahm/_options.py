@@ -30,7 +30,7 @@ CHECKS: Dict[str, Callable[[Any, str], Any]] = {
     "expected_maps": _whole(0),
     "memory": _whole(0, 2**62),
     "accuracy": _positive,
-    "ordering": _one_of("amd", "nested_dissection"),
+    "ordering": _one_of("auto", "amd", "nested_dissection"),
     "threads": _whole(0, 4096),
     "windows": _whole(0, 2**62),
     "radius": _radius,

@@ -89,7 +89,7 @@ class LogMapSolver(_Maker):
     expected_maps : for "automatic": number of maps to compute; 0: many.
     memory : for "automatic": bytes available for the factors; 0: half of the machine's memory.
     accuracy : for "march": largest relative difference to a global solve, in [1e-14, 0.1].
-    ordering : fill-reducing ordering of the factorization: "amd", or "nested_dissection", which is better for many maps.
+    ordering : fill-reducing ordering of the factorization: "auto", "amd" or "nested_dissection"; "auto" takes the one with fewer operations.
     threads : number of threads; 0: one per core. No result depends on it.
     progress : None, True (a progress bar), or a callable that takes (stage, fraction).
 
@@ -106,7 +106,7 @@ class LogMapSolver(_Maker):
 
     def __init__(self, surface: SurfaceLike, *, t_coef: float = 1.0, variant: str = "adaptive",
                  strategy: str = "automatic", expected_maps: int = 0, memory: int = 0, accuracy: float = 1e-9,
-                 ordering: str = "amd", threads: int = 0, progress: Progress = None) -> None:
+                 ordering: str = "auto", threads: int = 0, progress: Progress = None) -> None:
         self.surface = as_body(surface)
         self.options = checked(t_coef=t_coef, variant=variant, strategy=strategy, expected_maps=expected_maps,
                                memory=memory, accuracy=accuracy, ordering=ordering, threads=threads)

@@ -19,8 +19,9 @@ HeatOptions heat_options(const py::dict& options) {
   read(options, "expected_maps", o.expected_maps);
   read(options, "memory", o.memory);
   read(options, "accuracy", o.accuracy);
-  read_choice(options, "ordering", o.ordering,
-              {{"amd", Ordering::amd}, {"nested_dissection", Ordering::nested_dissection}});
+  read_choice(
+      options, "ordering", o.ordering,
+      {{"auto", Ordering::automatic}, {"amd", Ordering::amd}, {"nested_dissection", Ordering::nested_dissection}});
   read(options, "threads", o.threads);
   return o;
 }

@@ -35,7 +35,7 @@ inline void solve(const TangentGraph& graph, Bytes& bytes) {
   const std::uint8_t flags = bytes.byte();
   options.variant = (flags & 1) != 0 ? Variant::localized : Variant::adaptive;
   options.strategy = (flags & 4) != 0 ? Strategy::march : Strategy::global;
-  options.ordering = (flags & 16) != 0 ? Ordering::nested_dissection : Ordering::amd;
+  options.ordering = (flags & 16) != 0 ? Ordering::nested_dissection : Ordering::automatic;
   if ((flags & 32) != 0) options.t_coef = bytes.coordinate((flags & 64) != 0);
   const LogMapSolver solver(graph, options);
   std::vector<Source> sources;

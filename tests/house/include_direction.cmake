@@ -22,7 +22,7 @@ list(JOIN backends "|" any_backend)
 foreach(room util core surface applications)
   forbid(libahm/${room} "ahm/(${any_backend}|pcl|io|render|viewer)/" "the computing libraries include no backend, no file format, no pictures")
   forbid(libahm/${room} "(iostream|fstream|filesystem)>" "they do not print, and read the limits of the process only" "memory_limits")
-  forbid(libahm/${room} "cholmod" "CHOLMOD appears in ordering.cpp only" "ordering\\.cpp$")
+  forbid(libahm/${room} "cholmod" "the computing libraries do without SuiteSparse")
 endforeach()
 # Folders of the core: fields includes maps, maps includes heat, heat includes graph.
 forbid(libahm/core/include/ahm/graph "ahm/(heat|maps|fields)/" "graph is the lowest room of the core")

@@ -41,7 +41,6 @@ nlohmann::ordered_json versions() {
   const LinearAlgebraInfo algebra = linear_algebra_info();
   nlohmann::ordered_json result;
   result["ahm"] = AHM_VERSION;
-  result["cholmod"] = algebra.cholmod;
   result["blas"] = algebra.blas;
   result["blas_optimized"] = algebra.blas_optimized;
   result["eigen"] = fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION);
@@ -59,7 +58,7 @@ std::string versions_as_text() {
   const nlohmann::ordered_json v = versions();
   const auto text = [&](const char* key) { return v.at(key).get<std::string>(); };
   std::string result =
-      fmt::format("ahm {}\nCHOLMOD {}\nBLAS {}{}\nEigen {}\n", text("ahm"), text("cholmod"), text("blas"),
+      fmt::format("ahm {}\nBLAS {}{}\nEigen {}\n", text("ahm"), text("blas"),
                   v.at("blas_optimized").get<bool>() ? "" : " (reference BLAS: several times slower)", text("eigen"));
   if (v.contains("pcl")) result += fmt::format("PCL {}\n", text("pcl"));
   return result;

@@ -453,9 +453,11 @@ void offer_method(CLI::App& app, LogmapOptions& o) {
   add_parsed(app, "--radius", o.solve.radius, parse_positive, "R", "Map only points within this distance of the source")
       ->group(group);
   add_u_axis(app, o.source)->group(group);
-  add_parsed(app, "--ordering", o.solve.ordering,
-             choice_of<Ordering>({{"amd", Ordering::amd}, {"nested-dissection", Ordering::nested_dissection}}), "NAME",
-             "Ordering of the factorization: amd (default) or nested-dissection")
+  add_parsed(
+      app, "--ordering", o.solve.ordering,
+      choice_of<Ordering>(
+          {{"auto", Ordering::automatic}, {"amd", Ordering::amd}, {"nested-dissection", Ordering::nested_dissection}}),
+      "NAME", "Ordering of the factorization: auto (default), amd, nested-dissection")
       ->group(group);
   add_strategy(app, o.solve)->group(group);
   add_parsed(app, "--accuracy", o.solve.accuracy, parse_positive, "A",

@@ -68,8 +68,8 @@ SymbolicCholesky::SymbolicCholesky(SymbolicAnalysis analysis)
     : pattern_(std::make_shared<const SupernodalPattern>(std::move(analysis.pattern))),
       entries_(std::make_shared<const FactorEntries>(std::move(analysis.entries))) {}
 
-SymbolicCholesky::SymbolicCholesky(const SparseUpper& pattern, Ordering ordering)
-    : SymbolicCholesky(analyze(pattern, elimination_order(pattern, ordering))) {}
+SymbolicCholesky::SymbolicCholesky(const SparseUpper& pattern, Ordering ordering, unsigned threads)
+    : SymbolicCholesky(ordered_analysis(pattern, ordering, threads)) {}
 
 SymbolicCholesky::SymbolicCholesky(const SparseUpper& blocks, const SymbolicCholesky& scalar, int width)
     : SymbolicCholesky(analyze(blocks, expand_order(scalar.pattern_->permutation, width))) {}

@@ -1,96 +1,52 @@
 #include "cholesky/ordering.hpp"
 
-#include <amd.h>
-#include <cholmod.h>
-
+#include <algorithm>
 #include <limits>
-#include <mutex>
-#include <string>
+#include <numeric>
+#include <utility>
 
 #include "ahm/error.hpp"
-#include "cholesky/blas.hpp"
+#include "cholesky/dissection.hpp"
+#include "cholesky/minimum_degree.hpp"
 
 namespace ahm {
 namespace {
 
-constexpr const char* out_of_memory = "symbolic analysis: out of memory in the ordering";
-constexpr const char* no_order =
-    "symbolic analysis: METIS returned no ordering: out of memory, or interrupted by a signal";
-
-std::vector<std::int32_t> by_minimum_degree(const SparseUpper& pattern) {
-  if (pattern.rows.size() > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()))
+Adjacency adjacency(const SparseUpper& pattern) {
+  const auto for_each_edge = [&](const auto& visit) {
+    for (Offset j = 0; j < pattern.size(); ++j)
+      for (Offset p = pattern.column_begin[j]; p < pattern.column_begin[j + 1]; ++p)
+        if (pattern.rows[p] != j) visit(static_cast<std::int32_t>(pattern.rows[p]), static_cast<std::int32_t>(j));
+  };
+  if (pattern.rows.size() > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()) / 2)
     throw ResourceExhausted("symbolic analysis: the matrix is too large for the 32-bit ordering");
-  const std::vector<std::int32_t> begin(pattern.column_begin.begin(), pattern.column_begin.end()),
-      rows(pattern.rows.begin(), pattern.rows.end());
-  std::vector<std::int32_t> order(static_cast<std::size_t>(pattern.size()));
-  const int status =
-      amd_order(static_cast<std::int32_t>(pattern.size()), begin.data(), rows.data(), order.data(), nullptr, nullptr);
-  if (status == AMD_OUT_OF_MEMORY) throw ResourceExhausted(out_of_memory);
-  if (status != AMD_OK) throw Error("symbolic analysis: AMD failed with status " + std::to_string(status));
-  return order;
+  Adjacency graph;
+  graph.begin.resize(static_cast<std::size_t>(pattern.size()) + 1, 0);
+  for_each_edge([&](std::int32_t i, std::int32_t j) { ++graph.begin[i + 1], ++graph.begin[j + 1]; });
+  std::partial_sum(graph.begin.begin(), graph.begin.end(), graph.begin.begin());
+  graph.neighbors.resize(static_cast<std::size_t>(graph.begin.back()));
+  Numbers next(graph.begin.begin(), graph.begin.end() - 1);
+  for_each_edge([&](std::int32_t i, std::int32_t j) {
+    graph.neighbors[next[i]++] = j;
+    graph.neighbors[next[j]++] = i;
+  });
+  return graph;
 }
 
-/// Owns CHOLMOD's workspace.
-class Common {
- public:
-  Common() {
-    cholmod_l_start(&common_);
-    common_.print = 0;  // libahm does not print
-  }
-  ~Common() { cholmod_l_finish(&common_); }
-  Common(const Common&) = delete;
-  Common& operator=(const Common&) = delete;
-  cholmod_common* get() { return &common_; }
-
- private:
-  cholmod_common common_;
-};
-
-bool is_permutation(const std::vector<Offset>& order) {
-  std::vector<bool> seen(order.size(), false);
-  for (const Offset row : order) {
-    if (row < 0 || row >= static_cast<Offset>(order.size()) || seen[row]) return false;
-    seen[row] = true;
-  }
-  return true;
-}
-
-std::vector<std::int32_t> by_nested_dissection(const SparseUpper& pattern) {
-  cholmod_sparse view{};
-  view.nrow = view.ncol = static_cast<std::size_t>(pattern.size());
-  view.nzmax = pattern.rows.size();
-  view.p = const_cast<Offset*>(pattern.column_begin.data());
-  view.i = const_cast<Offset*>(pattern.rows.data());
-  view.stype = 1;
-  view.itype = CHOLMOD_LONG;
-  view.xtype = CHOLMOD_PATTERN;
-  view.dtype = CHOLMOD_DOUBLE;
-  view.sorted = view.packed = 1;
-  // METIS seeds and uses the random number generator of the process. Concurrent calls would make the ordering irreproducible.
-  static std::mutex mutex;
-  const std::scoped_lock lock(mutex);
-  Common common;
-  std::vector<Offset> order(view.nrow);
-  const bool done = cholmod_l_metis(&view, nullptr, 0, 0, order.data(), common.get());
-  if (common.get()->status == CHOLMOD_OUT_OF_MEMORY) throw ResourceExhausted(out_of_memory);
-  if (!done || common.get()->status < 0)
-    throw Error("symbolic analysis: METIS failed with status " + std::to_string(common.get()->status));
-  if (!is_permutation(order)) throw ResourceExhausted(no_order);  // CHOLMOD does not check the return value of METIS
-  return {order.begin(), order.end()};
-}
+/// Operations of the factorization per column from which nested dissection is worth its time.
+constexpr double many_operations = 30'000;
 
 }  // namespace
 
-std::vector<std::int32_t> elimination_order(const SparseUpper& pattern, Ordering ordering) {
-  return ordering == Ordering::amd ? by_minimum_degree(pattern) : by_nested_dissection(pattern);
-}
-
-LinearAlgebraInfo linear_algebra_info() {
-  int version[3];
-  cholmod_l_version(version);
-  const std::string blas = blas_name();
-  return {std::to_string(version[0]) + "." + std::to_string(version[1]) + "." + std::to_string(version[2]), blas,
-          blas_is_optimized(blas)};
+SymbolicAnalysis ordered_analysis(const SparseUpper& pattern, Ordering ordering, unsigned threads) {
+  const Adjacency graph = adjacency(pattern);
+  if (ordering == Ordering::nested_dissection) return analyze(pattern, nested_dissection(graph, threads));
+  SymbolicAnalysis by_degree = analyze(pattern, approximate_minimum_degree(graph));
+  if (ordering == Ordering::amd || by_degree.pattern.operations < many_operations * static_cast<double>(pattern.size()))
+    return by_degree;
+  SymbolicAnalysis by_dissection = analyze(pattern, nested_dissection(graph, threads));
+  return by_dissection.pattern.operations < by_degree.pattern.operations ? std::move(by_dissection)
+                                                                         : std::move(by_degree);
 }
 
 }  // namespace ahm

@@ -1,17 +1,14 @@
 /// \file
-/// Fill-reducing orderings. ordering.cpp is the only file that includes SuiteSparse: AMD [ADD04], and METIS as called by
-/// CHOLMOD [CDHR08].
+/// Fill-reducing orderings.
 #pragma once
 
-#include <cstdint>
-#include <vector>
-
 #include "ahm/cholesky/cholesky.hpp"
+#include "cholesky/supernodal_pattern.hpp"
 
 namespace ahm {
 
-/// @return row numbers of the matrix in elimination order
+/// The symbolic analysis of a matrix, ordered.
 /// @throws ResourceExhausted
-std::vector<std::int32_t> elimination_order(const SparseUpper& pattern, Ordering ordering);
+SymbolicAnalysis ordered_analysis(const SparseUpper& pattern, Ordering ordering, unsigned threads);
 
 }  // namespace ahm

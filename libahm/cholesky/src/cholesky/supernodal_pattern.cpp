@@ -74,8 +74,6 @@ std::unique_ptr<const SolveGroups> solve_groups(const SupernodalFactor& L, std::
 
 namespace {
 
-using Numbers = std::vector<std::int32_t>;
-
 Numbers inverse(const Numbers& order) {
   Numbers place(order.size());
   for (std::size_t k = 0; k < order.size(); ++k) place[order[k]] = static_cast<std::int32_t>(k);

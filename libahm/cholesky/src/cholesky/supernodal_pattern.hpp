@@ -11,6 +11,7 @@
 
 #include "ahm/cholesky/cholesky.hpp"
 #include "ahm/types.hpp"
+#include "cholesky/adjacency.hpp"
 
 namespace ahm {
 
@@ -119,6 +120,6 @@ struct SymbolicAnalysis {
 /// cost of some explicit zeros, as in CHOLMOD [CDHR08].
 /// @param order  row numbers in elimination order. The pattern uses a postorder of its elimination tree, which has the same fill
 /// @throws ResourceExhausted
-SymbolicAnalysis analyze(const SparseUpper& matrix, const std::vector<std::int32_t>& order);
+SymbolicAnalysis analyze(const SparseUpper& matrix, const Numbers& order);
 
 }  // namespace ahm

@@ -72,7 +72,7 @@ SystemSize system_size(const TangentGraph& graph, std::span<const Index> vertice
     pattern.rows.push_back(static_cast<Offset>(k));
     pattern.column_begin.push_back(static_cast<Offset>(pattern.rows.size()));
   }
-  const SymbolicCholesky analysis(pattern, options.ordering);
+  const SymbolicCholesky analysis(pattern, options.ordering, options.threads);
   size.nonzeros = static_cast<double>(analysis.nonzeros());
   size.operations = analysis.operations();
   return size;

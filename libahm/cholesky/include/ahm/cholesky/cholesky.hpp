@@ -6,7 +6,7 @@
 /// K.column_begin = {0, 1, 3};                              // | -1 2 |
 /// K.rows = {0, 0, 1};
 /// K.values = {2, -1, 2};
-/// const ahm::SymbolicCholesky symbolic(K, ahm::Ordering::amd);     // depends on the pattern only
+/// const ahm::SymbolicCholesky symbolic(K);                 // depends on the pattern only
 /// const ahm::CholeskyFactor factor(K, symbolic, "K");
 /// std::vector<double> x = {1, 0};
 /// factor.solve(x, 1);                                      // x = {2/3, 1/3}
@@ -35,8 +35,9 @@ struct SparseUpper {
 
 /// Fill-reducing ordering.
 enum class Ordering {
-  amd,               ///< approximate minimum degree [ADD04]: the cheapest ordering, best for a few solves
-  nested_dissection  ///< METIS: slower to compute, smaller factors, best for many solves
+  automatic,         ///< `amd`; for large factors also `nested_dissection`, if it needs fewer operations
+  amd,               ///< approximate minimum degree [ADD04]: the fastest to compute
+  nested_dissection  ///< by patches and smallest separators (docs/concepts/cholesky.md): smaller factors of large matrices
 };
 
 struct SupernodalPattern;
@@ -49,8 +50,9 @@ struct EntriesBy;
 /// The symbolic analysis of a sparsity pattern: ordering, elimination tree, supernodes.
 class SymbolicCholesky {
  public:
+  /// @param threads  number of threads; the result does not depend on it
   /// @throws ResourceExhausted
-  SymbolicCholesky(const SparseUpper& pattern, Ordering ordering);
+  explicit SymbolicCholesky(const SparseUpper& pattern, Ordering ordering = Ordering::automatic, unsigned threads = 1);
   /// The analysis of a pattern in which every entry of `scalar` is a block of `width` x `width`. Uses the ordering of `scalar`.
   SymbolicCholesky(const SparseUpper& blocks, const SymbolicCholesky& scalar, int width);
 
@@ -101,9 +103,8 @@ class CholeskyFactor {
   std::unique_ptr<const double[]> values_;
 };
 
-/// The BLAS and CHOLMOD in use, for reports.
+/// The BLAS in use, for reports.
 struct LinearAlgebraInfo {
-  std::string cholmod;  ///< version
   std::string blas;     ///< e.g. "OpenBLAS 0.3.21 ..." or the file name of the library
   bool blas_optimized;  ///< false for the reference BLAS, which is several times slower
 };

@@ -26,7 +26,7 @@ enum class Strategy {
 /// Options of the factorization (`HeatOperators`).
 struct FactorOptions {
   double t_coef = 1.0;  ///< tau = t_coef h^2; > 0
-  Ordering ordering = Ordering::amd;
+  Ordering ordering = Ordering::automatic;
   bool check_graph = true;  ///< run `validate(graph)` first: O(n)
   unsigned threads = 0;     ///< 0: one per core. No result depends on it
   Progress progress = {};
@@ -58,7 +58,7 @@ struct HeatOptions {
   /// For `march`: the largest relative difference to a global solve, in [1e-14, 0.1].
   double accuracy = 1e-9;
 
-  Ordering ordering = Ordering::amd;
+  Ordering ordering = Ordering::automatic;
   bool check_graph = true;  ///< run `validate(graph)` first: O(n)
 
   unsigned threads = 0;  ///< 0: one per core. No result depends on it
