@@ -91,7 +91,7 @@ std::span<const Experiment> experiments() {
                  "On coarse meshes an exact map costs no more than the first map by heat; vectors by heat have errors "
                  "of a few percent.",
                  exact_compared},
-      Experiment{"costs", "none", "Time, memory and accuracy of polar, heat and exact maps", "Not in the paper.",
+      Experiment{"costs", "none", "Time, memory and accuracy of maps and distances", "Not in the paper.",
                  costs},
       Experiment{
           "runtime", "Fig. 22", "Run time",

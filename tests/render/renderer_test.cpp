@@ -167,6 +167,26 @@ TEST_P(Drawing, HatchesPointsOfLowQualityInGray) {
   EXPECT_GT(dark, all / 5);
 }
 
+TEST_P(Drawing, DotsPointsWhoseDistanceIsOnlyABound) {
+  const std::vector<double> quality(patch.points.size(), 0.9);
+  std::vector<double> bounded;
+  for (const Vec3& p : patch.points) bounded.push_back(p[0] > 0);
+  scene.source_axes.reset();
+  scene.quality = quality;
+  const Pixels without(scene);
+  scene.bounded = bounded;
+  const Pixels with(scene);
+  int darker = 0, all = 0;
+  for (double x = 0.1; x < 0.9; x += 0.013)
+    for (double y = -0.9; y < 0.9; y += 0.017) {
+      EXPECT_EQ(with.at(-x, y), without.at(-x, y));
+      ++all;
+      darker += brightness(with.at(x, y)) < 0.8 * brightness(without.at(x, y)) ? 1 : 0;
+    }
+  EXPECT_GT(darker, all / 16);
+  EXPECT_LT(darker, all / 2);
+}
+
 TEST_P(Drawing, HasNoHolesBetweenTrianglesOrDiscs) {
   for (const int n : {GetParam() ? 3 : 12, 17, 90, 400}) {
     const Patch any = make_patch(n);

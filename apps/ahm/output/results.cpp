@@ -172,6 +172,7 @@ render::Scene Results::scene(const RowLogMap& rows, const std::vector<double>& q
   result.u = rows.u;
   result.v = rows.v;
   result.quality = quality;
+  result.bounded = rows.bounded;
   result.source = source.position;
   result.details = {rows.distance, rows.spread, rows.status, {}};
   if (source.frame) result.source_axes = {source.frame->x, source.frame->y, source.frame->normal};

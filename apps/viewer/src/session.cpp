@@ -332,6 +332,7 @@ struct Session::Impl {
     const std::vector<double> quality = quality_of(map, rows);
     shown.u = rows.u, shown.v = rows.v;
     shown.quality = quality;
+    shown.bounded = rows.bounded;
     shown.source = source;
     if (frame) shown.source_axes = {frame->x, frame->y, frame->normal};
     shown.details.distance = rows.distance;

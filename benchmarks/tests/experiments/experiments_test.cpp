@@ -85,6 +85,9 @@ TEST(SmoothSurfacesExperiment, LengthsOfPolarMapsAreOfSecondOrder) {
 TEST(CostsExperiment, ExactMapsHaveNoErrorAndMemoryIsMeasured) {
   const Table& table = toy("costs");
   EXPECT_EQ(table.where("method", "exact").largest("vector 95%"), 0);
+  EXPECT_LT(table.where("method", "CGAL").largest("distance 95%"), 1e-9);
+  EXPECT_LT(table.where("method", "distance").largest("distance 95%"), 0.02);
+  EXPECT_GT(table.where("method", "Dijkstra").smallest("distance 95%"), 0.02);
   EXPECT_LT(table.where("method", "polar").largest("vector 95%"), 1e-6);  // windows cover small meshes
   EXPECT_GT(table.smallest("added MB"), 0);
 }

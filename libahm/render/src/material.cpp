@@ -18,8 +18,11 @@ vec3 map_color(const Material& material, const Fragment& f) {
   if (!f.known) return material.pattern == Pattern::none ? glsl::plain_color() : glsl::unknown_color();
   const vec3 color =
       glsl::map_color(static_cast<int>(material.pattern), uv, f.dx, f.dy, material.sectors, material.rings);
-  if (material.pattern == Pattern::none || !(f.value.z < static_cast<float>(reliable_quality))) return color;
-  return glsl::low_quality_color(color, f.pixel * material.pixel_size, material.pixel_size);
+  if (material.pattern == Pattern::none) return color;
+  const vec2 pixel = f.pixel * material.pixel_size;
+  if (f.value.z < static_cast<float>(reliable_quality))
+    return glsl::low_quality_color(color, pixel, material.pixel_size);
+  return f.value.z > 0.5F * (1 + bounded_mark) ? glsl::bounded_color(color, pixel, material.pixel_size) : color;
 }
 
 }  // namespace
@@ -110,6 +113,8 @@ Paint make_paint(const Scene& scene, const std::vector<Index>& shown, const Pict
     paint.known[i] = 1;
     if (!scene.quality.empty() && std::isfinite(scene.quality[i]))
       paint.quality[i] = static_cast<float>(scene.quality[i]);
+    if (!scene.bounded.empty() && scene.bounded[i] == 1 && !(paint.quality[i] < static_cast<float>(reliable_quality)))
+      paint.quality[i] = bounded_mark;
     if (options.pattern == Pattern::distance) {
       paint.uv[i] = {distance_at(scene, point) / paint.ring_width, 0};
     } else if (is_cells) {

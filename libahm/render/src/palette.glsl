@@ -95,6 +95,13 @@ vec3 low_quality_color(vec3 color, vec2 pixel, float pixel_size) {
   return mix(vec3(gray), color, 0.18) * (1.0 - 0.62 * stripe);
 }
 
+// The color where the distance is only a lower bound: dark dots.
+vec3 bounded_color(vec3 color, vec2 pixel, float pixel_size) {
+  float width = 0.1414 * pixel_size;
+  float dot_here = (0.5 + 0.5 * square_wave(0.1414 * pixel.x, 2.0 * width)) * (0.5 + 0.5 * square_wave(0.1414 * pixel.y, 2.0 * width));
+  return color * (1.0 - 0.7 * dot_here);
+}
+
 // Diffuse light from above the viewer's left shoulder. The normal is in camera coordinates and points towards the viewer.
 vec3 matte(vec3 color, vec3 normal) {
   vec3 key = normalize(vec3(-0.35, 0.55, 0.85));

@@ -12,6 +12,7 @@ vec3 distance_color(float t);
 vec3 plain_color();
 vec3 unknown_color();
 vec3 low_quality_color(vec3 color, vec2 pixel, float pixel_size);
+vec3 bounded_color(vec3 color, vec2 pixel, float pixel_size);
 vec3 matte(vec3 color, vec3 normal);
 vec3 lit(vec3 color, vec3 normal, vec3 to_eye);
 

@@ -70,6 +70,7 @@ void check_map(const Scene& scene, Pattern pattern) {
   needs_distance ? check_size(scene.distance.size(), scene.points.size(), "distance")
                  : optional(scene.distance.size(), "distance");
   optional(scene.quality.size(), "quality");
+  optional(scene.bounded.size(), "bounded");
   optional(scene.normals.size(), "normals");
   optional(scene.colors.size(), "colors");
   optional(scene.details.distance.size(), "details.distance");

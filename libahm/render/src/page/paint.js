@@ -49,6 +49,7 @@ Ahm.make_uniforms = function (surface) {
       }
       if (trust < 0.5 && hatch > 0.5 && !by_value)
         return low_quality_color(color, gl_FragCoord.xy * vec2(1.0, -1.0) * pixel_size, pixel_size);
+      if (trust > 1.5 && hatch > 0.5) color = bounded_color(color, gl_FragCoord.xy * vec2(1.0, -1.0) * pixel_size, pixel_size);
       return with_decal(color, uvw.xy);
     }
     vec4 finish(vec3 color, vec3 n, vec3 p) {

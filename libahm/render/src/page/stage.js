@@ -96,6 +96,7 @@ Ahm.Stage = class {
       uv[2 * k + 1] = known ? map.uv[2 * row + 1] : 1e30;
       const q = map.quality ? map.quality[row] : 1;
       trust[k] = q === q ? q : 1;
+      if (map.bounded && map.bounded[row] === 1 && !(trust[k] < 0.5)) trust[k] = 2;
     }
     if (map.slopes) this.splats.set_slopes(map.slopes);
     this.set_marks(map);

@@ -16,7 +16,7 @@
 /// - triangles (3), faces (face of each triangle)
 /// - corners (4: three corners of the face, and the number of its corners), if there are faces with more than three corners
 ///
-/// Arrays of a map: uv (2), distance, spread, quality, status by row; for clouds slopes (6 bytes, 127 for zero) by vertex.
+/// Arrays of a map: uv (2), distance, spread, quality, bounded, status by row; for clouds slopes (6 bytes, 127 for zero) by vertex.
 #pragma once
 
 #include <memory>

@@ -53,6 +53,9 @@ struct Scene {
   /// Quality of the map, one number per point (`map_quality`). Points below `reliable_quality` are hatched in gray. Empty or not finite:
   /// not hatched.
   std::span<const double> quality;
+  /// 1 for points whose distance is only a lower bound (`RowLogMap::bounded`), one per point. Where their quality is not low, they are
+  /// dotted. May be empty.
+  std::span<const double> bounded;
   /// Position of the source, drawn as a red dot; need not be one of the points. All marks are drawn only where they are visible.
   Vec3 source{};
   /// Additional red dots, and a red polyline.
