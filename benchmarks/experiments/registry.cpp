@@ -91,8 +91,7 @@ std::span<const Experiment> experiments() {
                  "On coarse meshes an exact map costs no more than the first map by heat; vectors by heat have errors "
                  "of a few percent.",
                  exact_compared},
-      Experiment{"costs", "none", "Time, memory and accuracy of maps and distances", "Not in the paper.",
-                 costs},
+      Experiment{"costs", "none", "Time, memory and accuracy of maps and distances", "Not in the paper.", costs},
       Experiment{
           "runtime", "Fig. 22", "Run time",
           "AHM_l is 27 % slower than VHM_log, AHM_a 70 %; additional maps are 7 to 30 (AHM_l) and 3 to 10 (AHM_a) "

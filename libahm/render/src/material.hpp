@@ -46,7 +46,8 @@ struct Paint {
   double rings = 0;                 ///< number of rings up to the largest distance; only for Pattern::distance
   std::vector<Eigen::Vector2d> uv;  ///< per point of the scene, in ring widths; for cells: color, distance
   std::vector<float> known;         ///< 1, or 0 for points without a value, with uv = 0
-  std::vector<float> quality;       ///< quality; 1 if unknown; `bounded_mark` where it is not low and the distance is only a bound
+  std::vector<float>
+      quality;  ///< quality; 1 if unknown; `bounded_mark` where it is not low and the distance is only a bound
 };
 
 /// Computes the values that determine the colors. Cells of the same color are far apart.
