@@ -207,7 +207,6 @@ class PolarMapSolver::Fronts {
       front_.run(options.radius, options.progress.stop);
     }
     if (!over_) over_.emplace(*solver_.triangle_graph_, solver_.triangle_one_rings_, true);
-    over_->clear();
     run_from(*over_, source, exact.vertices, exact.horizon < options.radius, options);
     const auto all = seeds_of_front(*over_, errors ? &front_ : nullptr, options.frames);
     run_from(front_, source, all, continues, options);
@@ -227,7 +226,7 @@ class PolarMapSolver::Fronts {
       ExactGeodesics::Seeds found = seeds(exact, *windows_);
       if (std::isinf(options.radius) || !leaves_out_neighbors(found.vertices)) return found;
       // The front continues to vertices without triangles. It must not reach other vertices earlier than windows do.
-      exact.radius += 2 * longest_edge(found.vertices);
+      exact.radius += longest_edge(found.vertices);
       return seeds(exact, *windows_);
     } catch (const InvalidGeometry&) {
       return {};
@@ -257,9 +256,12 @@ class PolarMapSolver::Fronts {
   /// @param continues  whether the front reaches vertices that are no seeds
   static void run_from(Wavefront& front, const Source& source, std::span<const Wavefront::Seed> seeds, bool continues,
                        const PolarMapOptions& options) {
-    if (continues) {  // beyond the seeds the front needs its focusing
-      if (front.points() == 0) front.add(source);
-      front.run(std::ranges::max_element(seeds, {}, &Wavefront::Seed::distance)->distance, options.progress.stop);
+    front.clear();
+    if (continues) {
+      front.add(source);
+      // On triangulations the front needs its focusing beyond the seeds.
+      if (front.graph().is_delaunay())
+        front.run(std::ranges::max_element(seeds, {}, &Wavefront::Seed::distance)->distance, options.progress.stop);
     }
     front.restart(seeds);
     if (continues) front.run(options.radius, options.progress.stop);

@@ -159,6 +159,9 @@ struct Wavefront::Impl {
   std::array<std::vector<Index>, 4> free_;  ///< unused blocks of 1, 2, 4 and 8 entries
   std::vector<double> displacements_;       ///< d per entry: from the vertex to the point, vertex frame; d = 2: empty
   double longest_ = 0;  ///< longest edge passed: a path of length L crosses no side with an end beyond L + `longest_`
+  /// Radius of `run`, and the longest edge passed that a path of this length may cross: one whose nearer end is at most half of the
+  /// edge's length farther.
+  double limit_ = 0, longest_within_ = 0;
   double missed_;       ///< tolerance of `across_side`: share of a side by which a line may miss it
   bool is_curved_;      ///< whether paths carry the curvature of the front: on Delaunay triangulations
   bool directions_;
@@ -343,11 +346,13 @@ void Wavefront::Impl::restart(std::span<const Seed> seeds) {
   }
   // Only seeds with a neighbor that is not a seed need to spread.
   queue_.clear();
+  longest_ = 0;
   for (const Seed& seed : seeds) {
     const Index vertex = seed.vertex.index;
-    const auto is_free = [&](const Corner& corner) { return first_[corner.neighbor] == none; };
-    if (std::ranges::any_of(one_ring(vertex), is_free))
-      queue_.push({entries_[first_[vertex]].distance, vertex, seed.point});
+    const std::span<const Corner> ring = one_ring(vertex);
+    if (std::ranges::none_of(ring, [&](const Corner& corner) { return first_[corner.neighbor] == none; })) continue;
+    queue_.push({entries_[first_[vertex]].distance, vertex, seed.point});
+    for (const Corner& corner : ring) longest_ = std::max(longest_, corner.length);
   }
   for (const auto& [vertex, entry, path] : beside_point)
     if (first_[vertex] == none) offer(vertex, entry.point, entry.distance, 0, {}, path, entry.focusing);
@@ -355,7 +360,9 @@ void Wavefront::Impl::restart(std::span<const Seed> seeds) {
 
 void Wavefront::Impl::run(double radius, const std::stop_token& stop) {
   constexpr std::uint32_t between_looks = 4096;
-  for (std::uint32_t taken = 0; !queue_.empty() && next() <= radius; ++taken) {
+  limit_ = radius / graph_.length_unit();
+  longest_within_ = longest_;
+  for (std::uint32_t taken = 0; !queue_.empty() && queue_.top().distance - longest_within_ <= limit_; ++taken) {
     if (taken % between_looks == 0 && stop.stop_requested()) throw Cancelled("cancelled during unfold");
     const auto [distance, vertex, point] = queue_.top();
     queue_.pop();
@@ -486,6 +493,7 @@ void Wavefront::Impl::spread(Index from, Index point, double distance) {
     }
     longest = std::max(longest, corners[k].length);
   }
+  if (distance - longest / 2 <= limit_) longest_within_ = std::max(longest_within_, longest);
   for (std::size_t k = 0; k < degree; ++k) {
     const std::size_t next = k + 1 < degree ? k + 1 : 0;
     const Corner &right = corners[k], &left = corners[next];
