@@ -344,6 +344,11 @@ LocalMaps PolarMapSolver::local_maps(std::span<const SurfacePoint> sources, cons
   return local_maps(from, options, [&](std::size_t s) { return seeds_of(sources[s], u_axis); });
 }
 
+LocalMaps PolarMapSolver::local_maps(std::span<const Source> sources, const LocalMapOptions& options) const {
+  check(options);
+  return local_maps(sources, options, [](std::size_t) { return Seeds(); });
+}
+
 LocalMaps PolarMapSolver::local_maps(std::span<const Source> sources, const LocalMapOptions& options,
                                      const std::function<Seeds(std::size_t)>& seeds) const {
   const auto make_front = [&]() -> LocalFront {

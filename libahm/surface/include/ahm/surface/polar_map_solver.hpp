@@ -73,6 +73,8 @@ class PolarMapSolver {
   /// Local maps of points of the surface. @throws as `log_map`, `local_maps` of vertices
   LocalMaps local_maps(std::span<const SurfacePoint> sources, const LocalMapOptions& options,
                        const std::optional<Vec3>& u_axis = {}) const;
+  /// Local maps of sources of any form except curves, without windows. @throws as `local_maps` of vertices
+  LocalMaps local_maps(std::span<const Source> sources, const LocalMapOptions& options) const;
 
  private:
   class Fronts;
