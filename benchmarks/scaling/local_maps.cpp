@@ -7,6 +7,8 @@
 #include <cmath>
 #include <complex>
 #include <optional>
+#include <random>
+#include <string>
 #include <string_view>
 
 #include "ahm/conformance/triangle_meshes.hpp"
@@ -15,6 +17,7 @@
 #include "ahm/surface/exact/exact_geodesics.hpp"
 #include "ahm/surface/row_local_maps.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
+#include "ahm/util/vec.hpp"
 #include "experiments/comparison.hpp"
 #include "scaling/sizes.hpp"
 #include "shapes.hpp"
@@ -84,7 +87,7 @@ struct LocalErrors {
 };
 
 /// Compares local maps with exact maps of the mesh.
-/// @param cloud  whether the local maps are those of the mesh's vertices as points, with other frames
+/// @param cloud  whether the rows are the mesh's vertices as points, with other frames
 LocalErrors errors(const Surface& surface, const RowLocalMaps& maps, std::span<const Row> sources, bool cloud) {
   const ExactGeodesics geodesics(surface.mesh());
   LocalErrors found;
@@ -92,10 +95,11 @@ LocalErrors errors(const Surface& surface, const RowLocalMaps& maps, std::span<c
     const auto begin = maps.indptr[s], end = maps.indptr[s + 1];
     double radius = surface.mean_edge();
     for (Offset e = begin; e < end; ++e) radius = std::max(radius, maps.distances[e]);
-    const LogMap exact = geodesics.log_map(sources[s], {}, {.radius = 2 * radius});
+    const auto vertex = [&](Row row) { return cloud ? Vertex(row.index) : surface.mesh().vertex(row); };
+    const LogMap exact = geodesics.log_map(vertex(sources[s]), {.radius = 2 * radius});
     std::vector<std::complex<double>> ours, truth;
     for (Offset e = begin; e < end; ++e) {
-      const Vertex there = surface.mesh().vertex(maps.neighbors[e]);
+      const Vertex there = vertex(maps.neighbors[e]);
       if (exact.status(there) != Status::ok || !(exact.distance(there) > 0)) continue;
       ours.emplace_back(maps.logs[2 * e], maps.logs[2 * e + 1]);
       truth.emplace_back(exact.coordinates(there)[0], exact.coordinates(there)[1]);
@@ -112,13 +116,24 @@ LocalErrors errors(const Surface& surface, const RowLocalMaps& maps, std::span<c
 
 constexpr Index neighbors = 64, compared_sources = 200;
 
-void measure_local_maps(const Surface& surface, const ahm::Surface& view, const char* as, const Settings& settings,
+/// The vertices of a mesh, moved along its normals.
+/// @param noise  standard deviation, in mean edge lengths
+std::vector<Vec3> noisy_points(const Surface& surface, double noise) {
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> off(0, noise * surface.mean_edge());
+  std::vector<Vec3> points(surface.points().begin(), surface.points().end());
+  for (Index v = 0; noise > 0 && v < surface.size(); ++v)
+    if (const auto frame = surface.graph().frame(v)) points[v] = points[v] + off(random) * frame->normal;
+  return points;
+}
+
+void measure_local_maps(const Surface& surface, const ahm::Surface& view, std::string_view as, const Settings& settings,
                         Table& table) {
   std::vector<Row> rows;
   std::vector<Vertex> vertices;
   const Index n = static_cast<Index>(surface.size()), step = std::max(1, n / compared_sources);
   for (Index r = step / 2; r < view.rows().row_count(); r += step)
-    if (view.rows().vertex(Row(r)) && surface.mesh().rows().vertex(Row(r))) {
+    if (view.rows().vertex(Row(r))) {
       rows.emplace_back(r);
       vertices.push_back(view.vertex(Row(r)));
     }
@@ -126,7 +141,7 @@ void measure_local_maps(const Surface& surface, const ahm::Surface& view, const 
     const LocalMapOptions options{
         .k = neighbors, .method = method, .heat = {.check_graph = false, .threads = settings.threads}};
     const LocalErrors found =
-        errors(surface, row_local_maps(view, vertices, options), rows, std::string_view(as) != "triangles");
+        errors(surface, row_local_maps(view, vertices, options), rows, as != "triangles");
     if (found.vectors.empty()) continue;
     double entries = 0;
     const double s = min_seconds([&] { entries = static_cast<double>(row_local_maps(view, options).indptr.back()); });
@@ -145,13 +160,16 @@ Table local_maps(const Settings& settings) {
                "distance 95%", "result MB", "peak MB"});
   const auto measure = [&](const Surface& surface) {
     measure_local_maps(surface, surface.mesh(), "triangles", settings, table);
-    measure_local_maps(surface, pointcloud::PointCloudSurface::build(surface.points()), "points", settings, table);
+    for (const double noise : {0.0, 0.2, 1.0}) {
+      const std::string as = noise > 0 ? fmt::format("points, noise {}", noise) : "points";
+      measure_local_maps(surface, pointcloud::PointCloudSurface::build(noisy_points(surface, noise)), as, settings, table);
+    }
   };
   for (const Index n : sizes(settings, 600, {6890})) {
     measure(Surface("sphere", test::split_icosphere(n)));
     measure(Surface("torus", torus(n)));
   }
-  for_user_surfaces(settings, 60'000, measure);
+  for_user_surfaces(settings, 30'000, measure);
   const auto median = [&](const char* as, const char* method) {
     return quantile(table.where("as", as).where("method", method).numbers("vector 95%"), 0.5);
   };

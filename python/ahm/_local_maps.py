@@ -164,7 +164,7 @@ class LocalMaps:
             return result
 
         return PaddedMaps(spread(self.indices, np.int32), spread(np.ones(len(self.indices), bool), bool),
-                          *(spread(x, dtype) for x in (self.log, self.distance, self.weight)),
+                          spread(self.log, dtype), spread(self.distance, dtype), spread(self.weight, dtype),
                           None if self.transport is None else spread(self.transport, dtype))
 
     def __len__(self) -> int:
@@ -229,7 +229,7 @@ def local_maps(surface: SurfaceLike, radius: Optional[float] = None, k: Optional
     else:
         at = places.points(sources, "sources", on, empty=True)
         rows = np.where(at[2] == places.ROW, at[3], -1).astype(np.int32)
-    solver = getattr(surface, "_solver", surface)
+    solver: Any = getattr(surface, "_solver", surface)
     prepared = isinstance(solver, PolarMapSolver) and options["method"] == "polar"
     with reporting(progress) as report:
         found = _core.local_maps(solver._core if prepared else on._body, at, axis, options, report)
