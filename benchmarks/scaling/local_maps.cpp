@@ -1,17 +1,27 @@
-// Local maps of every vertex, and the margin that they need.
+// Local maps of every vertex by both methods compared with exact maps, and the margin that heat needs.
 #include "ahm/maps/local_maps.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <optional>
+#include <random>
+#include <string>
+#include <string_view>
 
+#include "ahm/conformance/triangle_meshes.hpp"
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/pointcloud/point_cloud_surface.hpp"
+#include "ahm/surface/exact/exact_geodesics.hpp"
+#include "ahm/surface/row_local_maps.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
+#include "ahm/util/vec.hpp"
+#include "experiments/comparison.hpp"
 #include "scaling/sizes.hpp"
 #include "shapes.hpp"
+#include "timing.hpp"
 
 namespace ahm::bench {
 namespace {
@@ -69,31 +79,104 @@ Table margins(const Settings& settings) {
   return table;
 }
 
-Table local_maps(const Settings& settings) {
-  Table table({"vertices", "R / h", "variant", "neighbours", "s", "maps per second", "times a loop of global solves",
-               "peak MB"});
-  for (Index n : sizes(settings, 600, {100000})) {
-    const auto surface = torus_graph(n);
-    const CsrGraph& graph = surface.graph();
-    const double edge = graph.mean_edge_length() * graph.length_unit();
-    const LogMapSolver solver(graph, {.strategy = Strategy::global, .check_graph = false});
-    const double single =
-        median_of_five([&] { solver.solve(Source::at_vertex(Vertex(n / 2)), {.threads = settings.threads}); });
-    for (double radius : {5.4, 12.0})
-      for (Variant variant : all_variants) {
-        Offset entries = 0;
-        const double s = seconds([&] {
-          const LocalMapOptions options{
-              .radius = radius * edge, .heat = {.variant = variant, .check_graph = false, .threads = settings.threads}};
-          entries = ahm::local_maps(graph, options).indptr.back();
-        });
-        table.add({graph.size(), radius, to_string(variant), static_cast<double>(entries) / graph.size(), s,
-                   graph.size() / s, single * graph.size() / s, peak_megabytes()});
-      }
+namespace {
+
+/// Errors of local maps relative to the distance.
+struct LocalErrors {
+  std::vector<double> vectors, distances;
+};
+
+/// Compares local maps with exact maps of the mesh.
+/// @param cloud  whether the rows are the mesh's vertices as points, with other frames
+LocalErrors errors(const Surface& surface, const RowLocalMaps& maps, std::span<const Row> sources, bool cloud) {
+  const ExactGeodesics geodesics(surface.mesh());
+  LocalErrors found;
+  for (std::size_t s = 0; s < sources.size(); ++s) {
+    const auto begin = maps.indptr[s], end = maps.indptr[s + 1];
+    double radius = surface.mean_edge();
+    for (Offset e = begin; e < end; ++e) radius = std::max(radius, maps.distances[e]);
+    const auto vertex = [&](Row row) { return cloud ? Vertex(row.index) : surface.mesh().vertex(row); };
+    const LogMap exact = geodesics.log_map(vertex(sources[s]), {.radius = 2 * radius});
+    std::vector<std::complex<double>> ours, truth;
+    for (Offset e = begin; e < end; ++e) {
+      const Vertex there = vertex(maps.neighbors[e]);
+      if (exact.status(there) != Status::ok || !(exact.distance(there) > 0)) continue;
+      ours.emplace_back(maps.logs[2 * e], maps.logs[2 * e + 1]);
+      truth.emplace_back(exact.coordinates(there)[0], exact.coordinates(there)[1]);
+      const double d = exact.distance(there);
+      found.distances.push_back(std::abs(maps.distances[e] - d) / d);
+      if (!cloud) found.vectors.push_back(std::abs(ours.back() - truth.back()) / d);
+    }
+    if (!cloud || ours.size() < 3) continue;
+    const std::vector<double> turned = relative_errors(ours, truth);  // the frames are fitted
+    found.vectors.insert(found.vectors.end(), turned.begin(), turned.end());
   }
-  table.seen = fmt::format("{:.0f} to {:.0f} maps per second, at least {:.2g} times as many as one after the other.",
-                           table.smallest("maps per second"), table.largest("maps per second"),
-                           table.smallest("times a loop of global solves"));
+  return found;
+}
+
+constexpr Index neighbors = 64, compared_sources = 200;
+
+/// The vertices of a mesh, moved along its normals.
+/// @param noise  standard deviation, in mean edge lengths
+std::vector<Vec3> noisy_points(const Surface& surface, double noise) {
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> off(0, noise * surface.mean_edge());
+  std::vector<Vec3> points(surface.points().begin(), surface.points().end());
+  for (Index v = 0; noise > 0 && v < surface.size(); ++v)
+    if (const auto frame = surface.graph().frame(v)) points[v] = points[v] + off(random) * frame->normal;
+  return points;
+}
+
+void measure_local_maps(const Surface& surface, const ahm::Surface& view, std::string_view as, const Settings& settings,
+                        Table& table) {
+  std::vector<Row> rows;
+  std::vector<Vertex> vertices;
+  const Index n = static_cast<Index>(surface.size()), step = std::max(1, n / compared_sources);
+  for (Index r = step / 2; r < view.rows().row_count(); r += step)
+    if (view.rows().vertex(Row(r))) {
+      rows.emplace_back(r);
+      vertices.push_back(view.vertex(Row(r)));
+    }
+  for (const Method method : {Method::polar, Method::heat}) {
+    const LocalMapOptions options{
+        .k = neighbors, .method = method, .heat = {.check_graph = false, .threads = settings.threads}};
+    const LocalErrors found =
+        errors(surface, row_local_maps(view, vertices, options), rows, as != "triangles");
+    if (found.vectors.empty()) continue;
+    double entries = 0;
+    const double s = min_seconds([&] { entries = static_cast<double>(row_local_maps(view, options).indptr.back()); });
+    const double added = added_megabytes([&] { row_local_maps(view, options); });
+    const double result = 1e-6 * entries * (sizeof(Row) + sizeof(double) * (2 + 2 + (view.graph().transport_layout().width())));
+    table.add({surface.name(), as, view.graph().size(), to_string(method), entries / view.graph().size(), s,
+               view.graph().size() / s, quantile(found.vectors, 0.5), quantile(found.vectors, 0.95),
+               quantile(found.distances, 0.95), result, added});
+  }
+}
+
+}  // namespace
+
+Table local_maps(const Settings& settings) {
+  Table table({"mesh", "as", "vertices", "method", "neighbors", "s", "maps per second", "vector 50%", "vector 95%",
+               "distance 95%", "result MB", "peak MB"});
+  const auto measure = [&](const Surface& surface) {
+    measure_local_maps(surface, surface.mesh(), "triangles", settings, table);
+    for (const double noise : {0.0, 0.2, 1.0}) {
+      const std::string as = noise > 0 ? fmt::format("points, noise {}", noise) : "points";
+      measure_local_maps(surface, pointcloud::PointCloudSurface::build(noisy_points(surface, noise)), as, settings, table);
+    }
+  };
+  for (const Index n : sizes(settings, 600, {6890})) {
+    measure(Surface("sphere", test::split_icosphere(n)));
+    measure(Surface("torus", torus(n)));
+  }
+  for_user_surfaces(settings, 30'000, measure);
+  const auto median = [&](const char* as, const char* method) {
+    return quantile(table.where("as", as).where("method", method).numbers("vector 95%"), 0.5);
+  };
+  table.seen = fmt::format(
+      "95th percentile of the vectors' relative error, median over meshes: polar {:.2g} on triangles and {:.2g} on "
+      "their vertices as points, heat {:.2g} and {:.2g}.",
+      median("triangles", "polar"), median("points", "polar"), median("triangles", "heat"), median("points", "heat"));
   return table;
 }
 

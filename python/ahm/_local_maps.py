@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Union
+from typing import TYPE_CHECKING, Any, Dict, NamedTuple, Optional, Union
 
 import numpy as np
 from numpy.typing import DTypeLike
@@ -13,11 +13,11 @@ from . import _places as places
 from ._options import checked
 from ._pickles import reduced
 from ._progress import Progress, reporting
-from ._solvers import as_body
+from ._solvers import ExactGeodesics, LogMapSolver, PolarMapSolver, as_body
 from .typing import Source, Sources, SurfaceLike, Vector
 
 if TYPE_CHECKING:
-    from scipy.sparse import csr_matrix
+    from scipy.sparse import coo_matrix, csr_matrix
 
 
 class PaddedMaps(NamedTuple):
@@ -28,7 +28,7 @@ class PaddedMaps(NamedTuple):
     log: np.ndarray  #: (s, k, d) coordinates of the neighbors in the source's frame, world units
     distance: np.ndarray  #: (s, k) geodesic distances of the neighbors from the source, world units
     weight: np.ndarray  #: (s, k) masses of the neighbors, world units to the power d
-    transport: np.ndarray  #: (s, k, 2) (cos, sin), or (s, k, d, d): from the source's frame to the neighbor's frame
+    transport: Optional[np.ndarray]  #: (s, k, 2) (cos, sin), or (s, k, d, d): from the source's frame to the neighbor's
 
 
 class LocalMaps:
@@ -43,8 +43,10 @@ class LocalMaps:
     distance : (e,) geodesic distances of the neighbors from the source, as `LogMap.distance`, world units.
     weight : (e,) masses of the neighbors, for integration, world units to the power d.
     transport : (e, 2) (cos, sin), or (e, d, d): takes components in the source's frame to components in the neighbor's frame.
+        `transport.view(complex)[:, 0]` are complex numbers, without a copy. None if the maps were made without.
     sources : (s,) int32 rows of the sources; -1 for sources that are not rows.
     columns : number of rows of the surface.
+    method : "polar" or "heat".
 
     >>> import ahm
     >>> maps = ahm.local_maps(ahm.shapes.plane(9, 9), radius=1.0, sources=[40, 0])
@@ -53,8 +55,8 @@ class LocalMaps:
     """
 
     def __init__(self, sources: np.ndarray, columns: int, indptr: np.ndarray, indices: np.ndarray, log: np.ndarray,
-                 distance: np.ndarray, weight: np.ndarray, transport: np.ndarray) -> None:
-        self.sources, self.columns = sources, columns
+                 distance: np.ndarray, weight: np.ndarray, transport: Optional[np.ndarray], method: str) -> None:
+        self.sources, self.columns, self.method = sources, columns, method
         self.indptr, self.indices, self.log = indptr, indices, log
         self.distance, self.weight, self.transport = distance, weight, transport
 
@@ -85,11 +87,44 @@ class LocalMaps:
         result.data, result.indices, result.indptr = entries.copy(), self.indices.astype(index), self.indptr.astype(index)
         return result
 
+    def coo(self, values: Union[str, Vector] = "distance") -> coo_matrix:
+        """One value per entry as a scipy.sparse.coo_matrix of shape (sources, rows). Arguments and errors as in `csr`.
+
+        >>> import ahm
+        >>> maps = ahm.local_maps(ahm.shapes.plane(9, 9), radius=1.0)
+        >>> matrix = maps.coo("u")
+        >>> matrix.row[:3].tolist(), sorted(matrix.col[:3].tolist())
+        ([0, 0, 0], [0, 1, 9])
+        """
+        return self.csr(values).tocoo()
+
+    def edge_index(self) -> np.ndarray:
+        """(2, e) int64 edges of a graph for message passing, as in PyTorch Geometric: from the neighbor, row 0, to the source, row 1.
+
+        Column e is entry e: `log[e]` are the coordinates of row `edge_index[0, e]` in the frame of row `edge_index[1, e]`.
+
+        >>> import ahm
+        >>> maps = ahm.local_maps(ahm.shapes.plane(9, 9), radius=1.0, sources=[40])
+        >>> edges = maps.edge_index()
+        >>> edges.shape, edges[:, 0].tolist()
+        ((2, 5), [40, 40])
+
+        Raises ValueError if a source is not a row.
+        """
+        if np.any(self.sources < 0):
+            raise ValueError(f"sources[{int(np.argmax(self.sources < 0))}]: not a row; an edge needs a row at both ends")
+        result = np.empty((2, len(self.indices)), np.int64)
+        result[0] = self.indices
+        result[1] = np.repeat(self.sources, np.diff(self.indptr))
+        return result
+
     def _named(self, values: str) -> np.ndarray:
         arguments.choice(values, "values", ("distance", "weight", "u", "v", "transport"))
         if values in "uv":
             return self.log[:, "uv".index(values)]
         if values == "transport":
+            if self.transport is None:
+                raise ValueError("values: 'transport' is missing; make the maps with transport=True")
             if self.transport.ndim != 2:
                 raise ValueError("values: 'transport' requires rotations of the plane; these transports are matrices")
             return self.transport[:, 0] + 1j * self.transport[:, 1]
@@ -129,7 +164,8 @@ class LocalMaps:
             return result
 
         return PaddedMaps(spread(self.indices, np.int32), spread(np.ones(len(self.indices), bool), bool),
-                          *(spread(x, dtype) for x in (self.log, self.distance, self.weight, self.transport)))
+                          spread(self.log, dtype), spread(self.distance, dtype), spread(self.weight, dtype),
+                          None if self.transport is None else spread(self.transport, dtype))
 
     def __len__(self) -> int:
         """Number of sources."""
@@ -137,18 +173,20 @@ class LocalMaps:
 
     def __reduce__(self) -> tuple:
         return reduced(LocalMaps, self.sources, self.columns, self.indptr, self.indices, self.log, self.distance, self.weight,
-                       self.transport)
+                       self.transport, self.method)
 
     def __repr__(self) -> str:
         return f"<ahm.LocalMaps: {arguments.counted(len(self), 'source')}, {arguments.counted(len(self.indices), 'entry')}>"
 
 
 def local_maps(surface: SurfaceLike, radius: Optional[float] = None, k: Optional[int] = None, *,
-               sources: Optional[Sources] = None, u_axis: Optional[Vector] = None, margin: float = 2.0, t_coef: float = 1.0,
-               variant: str = "adaptive", threads: int = 0, progress: Progress = None) -> LocalMaps:
+               sources: Optional[Sources] = None, u_axis: Optional[Vector] = None, method: str = "auto", transport: bool = True,
+               margin: Optional[float] = None, t_coef: Optional[float] = None, variant: Optional[str] = None, threads: int = 0,
+               progress: Progress = None) -> LocalMaps:
     """Log maps within a radius, or of the k nearest rows, around every row or around `sources`.
 
-    Time and memory depend only on the size of these neighborhoods.
+    Time and memory depend only on the size of these neighborhoods. The polar method first prepares the whole surface; for several
+    calls pass a `PolarMapSolver` or a `SurfaceSolver`.
 
     surface : a `Surface`, a solver, or what `ahm.surface` takes.
     radius : radius of the maps, > 0, world units; None: large enough for k entries.
@@ -156,8 +194,14 @@ def local_maps(surface: SurfaceLike, radius: Optional[float] = None, k: Optional
     sources : points: rows, positions, `(faces, barycentric)`, `(edges, t)`. None: all rows; rows without a vertex get no entries.
     u_axis : (3,) vector in space, projected to the surface at every source. Requires `sources`. None: as in
         `LogMapSolver.log_map`.
-    margin : width of the margin of each patch beyond the radius, in units of sqrt(tau). A larger margin is more accurate.
-    t_coef, variant, threads, progress : as in `LogMapSolver`.
+    method : "polar": lengths and directions of shortest paths, by exact windows and small fronts. "heat": the affine heat method,
+        smooth on noisy clouds. "auto" (default): the method of a solver, otherwise "polar" on meshes and on clouds with little noise,
+        and "heat" elsewhere; also "heat" if margin, t_coef or variant is given.
+    transport : False: without `LocalMaps.transport`, to save memory.
+    margin : heat: width of the margin of each patch beyond the radius, in units of sqrt(tau); None: 2. A larger margin is more
+        accurate.
+    t_coef, variant : heat: as in `LogMapSolver`; None: 1 and "adaptive".
+    threads, progress : as in `LogMapSolver`.
 
     >>> import ahm
     >>> maps = ahm.local_maps(ahm.shapes.plane(9, 9), radius=1.5, k=9)
@@ -174,8 +218,9 @@ def local_maps(surface: SurfaceLike, radius: Optional[float] = None, k: Optional
         raise ValueError("radius: missing; pass a radius or k")
     if radius is not None:
         radius = arguments.real(radius, "radius", positive=True)
-    options = checked(radius=radius, k=k, margin=margin, t_coef=t_coef,
-                      variant=variant, threads=threads)
+    of_heat = checked(margin=margin, t_coef=t_coef, variant=variant)
+    options = dict(checked(radius=radius, k=k, threads=threads, transport=transport), method=_method(surface, method, of_heat),
+                   **of_heat)
     axis = arguments.vector(u_axis, "u_axis")
     if sources is None:
         if axis is not None:
@@ -184,9 +229,29 @@ def local_maps(surface: SurfaceLike, radius: Optional[float] = None, k: Optional
     else:
         at = places.points(sources, "sources", on, empty=True)
         rows = np.where(at[2] == places.ROW, at[3], -1).astype(np.int32)
+    solver: Any = getattr(surface, "_solver", surface)
+    prepared = isinstance(solver, PolarMapSolver) and options["method"] == "polar"
     with reporting(progress) as report:
-        found = _core.local_maps(on._body, at, axis, options, report)
-    return LocalMaps(rows, len(on), **found)
+        found = _core.local_maps(solver._core if prepared else on._body, at, axis, options, report)
+    return LocalMaps(rows, len(on), **found, method=options["method"])
+
+
+def _method(surface: Any, method: str, of_heat: Dict[str, Any]) -> str:
+    """The method of local maps.
+
+    of_heat : the options of the heat method that were given.
+    """
+    arguments.choice(method, "method", ("auto", "polar", "heat"))
+    if of_heat and method == "polar":
+        raise TypeError(f"{min(of_heat)}: method 'polar' has no such option")
+    if method != "auto":
+        return method
+    solver = getattr(surface, "_solver", surface)
+    if of_heat or isinstance(solver, LogMapSolver):
+        return "heat"
+    if isinstance(solver, (PolarMapSolver, ExactGeodesics)):
+        return "polar"
+    return _core.choose_method(as_body(surface)._body)
 
 
 class LocalStroke(NamedTuple):
@@ -206,7 +271,7 @@ def local_stroke(surface: SurfaceLike, points: Sources, radius: float, *, closed
     Time and memory depend only on the size of this neighborhood. Distances are measured from the nearest sample of the curve;
     samples are half an edge apart.
 
-    surface, radius, margin, t_coef, variant, progress : as in `local_maps`.
+    surface, radius, margin, t_coef, variant, progress : as in `local_maps` by heat.
     points, closed, shape : as in `stroke`.
 
     >>> import ahm

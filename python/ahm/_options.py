@@ -39,6 +39,7 @@ CHECKS: Dict[str, Callable[[Any, str], Any]] = {
     "distances": arguments.flag,
     "k": _whole(1),
     "margin": _positive,
+    "transport": arguments.flag,
     "delaunay": arguments.flag,
     "clamp_weights": arguments.flag,
     "non_manifold": _one_of("error", "split"),

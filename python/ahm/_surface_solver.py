@@ -109,14 +109,17 @@ class SurfaceSolver:
         return _trace(self.surface, start, direction, length, progress=progress)
 
     def local_maps(self, radius: Optional[float] = None, k: Optional[int] = None, *, sources: Optional[Sources] = None,
-                   u_axis: Optional[Vector] = None, margin: float = 2.0, progress: Progress = None) -> LocalMaps:
-        """Log maps within a radius around every row, or around `sources`. Arguments and errors as in `ahm.local_maps`.
+                   u_axis: Optional[Vector] = None, margin: Optional[float] = None, transport: bool = True,
+                   progress: Progress = None) -> LocalMaps:
+        """Log maps within a radius around every row, or around `sources`: by heat if the solver's method is "heat", otherwise
+        polar. Arguments and errors as in `ahm.local_maps`.
 
         >>> import ahm
         >>> ahm.SurfaceSolver(ahm.shapes.plane(9, 9)).local_maps(radius=1.0, sources=[40, 0])
         <ahm.LocalMaps: 2 sources, 8 entries>
         """
-        return _local_maps(self.surface, radius, k, sources=sources, u_axis=u_axis, margin=margin, progress=progress)
+        return _local_maps(self._solver, radius, k, sources=sources, u_axis=u_axis, margin=margin, transport=transport,
+                           method="heat" if self.method == "heat" else "polar", progress=progress)
 
     def __reduce__(self) -> tuple:
         return reduced(SurfaceSolver, self._solver)

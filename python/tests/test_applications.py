@@ -244,3 +244,42 @@ def test_atlases_cover_every_face_and_stay_within_the_texture():
 def test_clouds_have_atlases_too(sphere):
     a = ahm.atlas(ahm.PointCloud(sphere.points, sphere.points), charts=8, size=256)
     assert len(a.faces) > 1000 and len(a.points) == 642
+
+
+def test_local_maps_have_a_method(sphere):
+    by = {method: ahm.local_maps(sphere, 0.4, method=method) for method in ("auto", "polar", "heat")}
+    assert [maps.method for maps in by.values()] == ["polar", "polar", "heat"]
+    assert np.array_equal(by["auto"].log, by["polar"].log)
+    whole = ahm.PolarMapSolver(sphere).log_map(7)
+    entries = slice(by["polar"].indptr[7], by["polar"].indptr[8])
+    near = by["polar"].indices[entries]
+    assert np.allclose(by["polar"].log[entries], whole.uv[near], atol=1e-12)
+    assert set(near) == set(np.flatnonzero(whole.distance <= 0.4))
+    for solver, method in ((ahm.PolarMapSolver(sphere), "polar"), (ahm.SurfaceSolver(sphere, "polar"), "polar"),
+                           (ahm.LogMapSolver(sphere), "heat"), (ahm.SurfaceSolver(sphere, "heat"), "heat")):
+        maps = ahm.local_maps(solver, 0.4) if not isinstance(solver, ahm.SurfaceSolver) else solver.local_maps(0.4)
+        assert maps.method == method and np.array_equal(maps.log, by[method].log)
+    assert ahm.local_maps(sphere, 0.4, variant="localized", sources=[0]).method == "heat"
+    with pytest.raises(TypeError, match="margin: method 'polar' has no such option"):
+        ahm.local_maps(sphere, 0.4, method="polar", margin=3)
+    grid = ahm.local_maps(ahm.Grid((9, 7), 0.5), 0.8, method="polar")
+    assert np.allclose(grid.distance, np.hypot(*grid.log.T)) and len(grid) == 63
+
+
+def test_local_maps_are_edges_with_transports(sphere):
+    maps = ahm.local_maps(sphere, k=9)
+    edges = maps.edge_index()
+    assert edges.shape == (2, 9 * len(sphere)) and edges.dtype == np.int64 and edges.flags.c_contiguous
+    matrix = maps.coo("transport")
+    assert np.array_equal(edges, [matrix.col, matrix.row])
+    assert np.array_equal(maps.transport.view(complex)[:, 0], matrix.data)
+    # Opposite edges have opposite transports.
+    there = {(i, j): z for j, i, z in zip(*edges, matrix.data)}
+    assert max(abs(z * there[j, i] - 1) for (i, j), z in there.items() if (j, i) in there) < 1e-9
+    without = ahm.local_maps(sphere, k=9, transport=False)
+    assert without.transport is None and np.array_equal(without.log, maps.log)
+    assert without.padded().transport is None
+    with pytest.raises(ValueError, match="transport=True"):
+        without.csr("transport")
+    with pytest.raises(ValueError, match=r"sources\[0\]: not a row"):
+        ahm.local_maps(sphere, 0.3, sources=[[0, 0, 1.0], [0.6, 0, 0.8]]).edge_index()

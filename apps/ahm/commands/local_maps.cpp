@@ -140,7 +140,7 @@ void write(const LocalMapsOptions& options, const RowLocalMaps& maps, const std:
   file.commit();
 }
 
-/// Warns of a vertex with very many neighbors: each map around it is solved on all of them.
+/// Warns of a vertex with very many neighbors: each map by heat around it is solved on all of them.
 void comment_on_hubs(const TangentGraph& graph, std::size_t sources, Journal& journal) {
   constexpr double long_work = 3e8;  // about a minute
   std::size_t most = 0;
@@ -172,10 +172,12 @@ void run(const LocalMapsOptions& options) {
   std::vector<Vertex> vertices;
   for (Row row : wanted) vertices.push_back(*rows.vertex(row));
 
-  comment_on_hubs(input.graph(), vertices.size(), journal);
+  LocalMapOptions map_options;
+  const Method method = options.solve.method.value_or(input.surface().suggested_method());
+  if (method == Method::heat) comment_on_hubs(input.graph(), vertices.size(), journal);
 
   journal.start("solve");
-  LocalMapOptions map_options;
+  map_options.method = method;
   map_options.radius = options.radius;
   map_options.k = options.k;
   map_options.heat = options.solve.diffusion();
@@ -193,6 +195,7 @@ void run(const LocalMapsOptions& options) {
 
   const double mean = static_cast<double>(maps.neighbors.size()) / static_cast<double>(wanted.size());
   nlohmann::ordered_json j = summary("ahm local-maps", options.input.path, options.output, input);
+  j["method"] = to_string(method);
   if (options.radius > 0) j["radius"] = options.radius;
   j["sources"] = wanted.size();
   j["entries"] = maps.neighbors.size();
@@ -211,6 +214,7 @@ void offer(CLI::App& app, LocalMapsOptions& o) {
              "all (default), or a file with row numbers of INPUT, counted from 0");
   app.add_flag("--pad", o.pad, "Write K entries per source and a mask; requires --k");
   app.add_flag("--float32", o.float32, "Write numbers in single precision");
+  add_method(app, o.solve, {Method::polar}, true);
   add_variant(app, o.solve);
   add_backend(app, o.input);
   add_t_coef(app, o.solve);

@@ -248,6 +248,15 @@ TEST(LocalMapsExperiment, WiderMarginsAreNearer) {
   }
 }
 
+TEST(LocalMapsExperiment, PolarMapsAreNearestToExactOnes) {
+  const Table& table = toy("local_maps");
+  const auto largest = [&](const char* as, const char* method) {
+    return table.where("as", as).where("method", method).largest("vector 95%");
+  };
+  EXPECT_LT(largest("triangles", "polar"), 1e-9);
+  EXPECT_LT(largest("points", "polar"), largest("points", "heat"));
+}
+
 TEST(MarchExperiment, MapsEveryVertexByBothStrategies) {
   const Table& table = toy("march");
   for (const char* shape : {"cloud", "mesh"}) {

@@ -11,6 +11,7 @@
 #include "ahm/graph/csr_graph.hpp"
 #include "ahm/surface/exact/flat_triangles.hpp"
 #include "ahm/util/memory.hpp"
+#include "ahm/util/small_math.hpp"
 
 namespace ahm::detail {
 
@@ -133,19 +134,22 @@ constexpr Offset windows_per_vertex = 8, min_windows = Offset{1} << 17;
 /// as the points, so the seeds are not exact. Their expected error combines the error of `other`, a front from the source
 /// without windows, with the difference to it. The difference is divided by the square root of 2, as for two equally good
 /// estimates.
-std::vector<Wavefront::Seed> seeds_of_front(const Wavefront& front, const Wavefront& other, bool frames) {
+/// @param other  null: no errors
+std::vector<Wavefront::Seed> seeds_of_front(const Wavefront& front, const Wavefront* other, bool frames) {
   std::vector<Wavefront::Seed> seeds;
-  for (Index i = 0; i < front.graph().size(); ++i) {
-    const Vertex v(i);
+  for (const Vertex v : front.reached()) {
     const double distance = front.distance(v);
-    if (!std::isfinite(distance)) continue;
-    const Vec2 direction = front.direction(v), other_direction = other.direction(v);
-    const double share = other.distance(v) / distance;
-    const double apart =
-        std::hypot(direction[0] - share * other_direction[0], direction[1] - share * other_direction[1]);
-    const double error = std::hypot(apart / std::numbers::sqrt2, other.direction_error(v));
+    const Vec2 direction = front.direction(v);
+    double error = 0;
+    if (other != nullptr) {
+      const Vec2 other_direction = other->direction(v);
+      const double share = other->distance(v) / distance;
+      const double apart =
+          std::hypot(direction[0] - share * other_direction[0], direction[1] - share * other_direction[1]);
+      error = std::hypot(apart / std::numbers::sqrt2, other->direction_error(v));
+    }
     seeds.push_back({v, distance, direction, frames ? front.arrival(v) : Vec2{NAN, NAN}, front.nearest(v),
-                     std::isfinite(error) ? error : 0});
+                     std::isfinite(error) ? error : 0, front.is_mirrored(v)});
   }
   return seeds;
 }
@@ -176,38 +180,118 @@ PolarMapSolver::PolarMapSolver(const Surface& surface, const PolarSolverOptions&
   }
 }
 
-/// @param seeds  seeds(options) returns exact polar coordinates around the source
-template <class Seeds>
-LogMap PolarMapSolver::seeded_map(const Source& source, const PolarMapOptions& options, const Seeds& seeds) const {
-  return detail::with_memory_check("a polar map", [&] {
-    Wavefront front(*graph_, one_rings_, true);
-    front.add(source);
-    std::vector<Wavefront::Seed> exact;
+/// The fronts and windows of one thread. They are used again for each source, so that the time of a small map does not depend on
+/// the size of the graph.
+class PolarMapSolver::Fronts {
+ public:
+  explicit Fronts(const PolarMapSolver& solver) : solver_(solver), front_(*solver.graph_, solver.one_rings_, true) {}
+
+  /// A front with final results up to the radius of the options.
+  /// @param seeds   empty: the front starts at the source
+  /// @param errors  whether the front has errors of directions on clouds, which takes a second front
+  const Wavefront& around(const Source& source, const Seeds& seeds, const PolarMapOptions& options, bool errors) {
+    front_.clear();
+    const auto exact = seeds ? exact_seeds(seeds, options) : ExactGeodesics::Seeds{};
+    if (exact.vertices.empty()) {
+      front_.add(source);
+      front_.run(options.radius, options.progress.stop);
+      return front_;
+    }
+    const bool continues = exact.horizon < options.radius || leaves_out_neighbors(exact.vertices);
+    if (!solver_.triangle_graph_) {
+      run_from(front_, source, exact.vertices, continues, options);
+      return front_;
+    }
+    if (errors) {
+      front_.add(source);
+      front_.run(options.radius, options.progress.stop);
+    }
+    if (!over_) over_.emplace(*solver_.triangle_graph_, solver_.triangle_one_rings_, true);
+    run_from(*over_, source, exact.vertices, exact.horizon < options.radius, options);
+    const auto all = seeds_of_front(*over_, errors ? &front_ : nullptr, options.frames);
+    run_from(front_, source, all, continues, options);
+    return front_;
+  }
+
+ private:
+  /// The vertices that windows reach up to the radius. Empty where windows get lost in needles, or the source is outside of the
+  /// triangles.
+  ExactGeodesics::Seeds exact_seeds(const Seeds& seeds, const PolarMapOptions& options) {
+    if (!windows_) windows_.emplace(*solver_.geodesics_);
+    ExactMapOptions exact{.radius = options.radius,
+                          .max_windows = solver_.windows_,
+                          .frames = options.frames || solver_.graph_->transport_layout().may_reflect(),
+                          .progress = options.progress};
     try {
-      exact = seeds(ExactMapOptions{
-          .radius = options.radius, .max_windows = windows_, .frames = options.frames, .progress = options.progress});
-    } catch (
-        const InvalidGeometry&) {  // windows lost in needles, or a source outside of the triangles: start at the source
+      ExactGeodesics::Seeds found = seeds(exact, *windows_);
+      if (std::isinf(options.radius) || !leaves_out_neighbors(found.vertices)) return found;
+      // The front continues to vertices without triangles. It must not reach other vertices earlier than windows do.
+      exact.radius += longest_edge(found.vertices);
+      return seeds(exact, *windows_);
+    } catch (const InvalidGeometry&) {
+      return {};
     }
-    const auto run_from = [&](Wavefront& over) {
-      if (!exact.empty()) {
-        // Beyond the seeds the front needs its focusing, and its orientation where transports may reflect.
-        const double farthest = std::ranges::max_element(exact, {}, &Wavefront::Seed::distance)->distance;
-        const bool front_continues = exact.size() < static_cast<std::size_t>(graph_->size());
-        if (front_continues || over.graph().transport_layout().may_reflect()) over.run(farthest, options.progress.stop);
-        over.restart(exact);
-      }
-      over.run(options.radius, options.progress.stop);
-    };
-    if (triangle_graph_ && !exact.empty()) {
-      front.run(options.radius, options.progress.stop);
-      Wavefront over(*triangle_graph_, triangle_one_rings_, true);
-      over.add(source);
-      run_from(over);
-      exact = seeds_of_front(over, front, options.frames);
+  }
+
+  /// Whether windows cannot reach a neighbor of the seeds: it has no triangles, or those of another component.
+  bool leaves_out_neighbors(std::span<const Wavefront::Seed> seeds) const {
+    if (!solver_.triangle_graph_) return false;
+    const exact::PolyhedralSurface& triangles = solver_.geodesics_->triangles().surface;
+    return std::ranges::any_of(seeds, [&](const Wavefront::Seed& seed) {
+      return std::ranges::any_of(solver_.graph_->star(seed.vertex.index).neighbors, [&](Index j) {
+        return triangles.component(j) != triangles.component(seed.vertex.index);
+      });
+    });
+  }
+
+  double longest_edge(std::span<const Wavefront::Seed> seeds) const {
+    double longest = 0;
+    for (const Wavefront::Seed& seed : seeds) {
+      const Star star = solver_.graph_->star(seed.vertex.index);
+      for (std::size_t e = 0; e < star.degree(); ++e) longest = std::max(longest, length(star.log(e)));
     }
-    run_from(front);
-    return polar_map(front, source, options);
+    return longest * solver_.graph_->length_unit();
+  }
+
+  /// @param continues  whether the front reaches vertices that are no seeds
+  static void run_from(Wavefront& front, const Source& source, std::span<const Wavefront::Seed> seeds, bool continues,
+                       const PolarMapOptions& options) {
+    front.clear();
+    if (continues) {
+      front.add(source);
+      // On triangulations the front needs its focusing beyond the seeds.
+      if (front.graph().is_delaunay())
+        front.run(std::ranges::max_element(seeds, {}, &Wavefront::Seed::distance)->distance, options.progress.stop);
+    }
+    front.restart(seeds);
+    if (continues) front.run(options.radius, options.progress.stop);
+  }
+
+  const PolarMapSolver& solver_;
+  Wavefront front_;
+  std::optional<Wavefront> over_;  ///< for clouds: over the selected triangles
+  std::optional<ExactGeodesics::Workspace> windows_;
+};
+
+PolarMapSolver::Seeds PolarMapSolver::seeds_of(Vertex source) const {
+  if (!geodesics_) return {};
+  return [this, source](const ExactMapOptions& options, ExactGeodesics::Workspace& workspace) {
+    return geodesics_->seeds(source, options, workspace);
+  };
+}
+
+PolarMapSolver::Seeds PolarMapSolver::seeds_of(const SurfacePoint& source, const std::optional<Vec3>& u_axis) const {
+  if (!geodesics_) return {};
+  return [this, source, u_axis](const ExactMapOptions& options, ExactGeodesics::Workspace& workspace) {
+    return geodesics_->seeds(source, u_axis, options, workspace);
+  };
+}
+
+/// @param seeds  empty: the front starts at the source
+LogMap PolarMapSolver::log_map(const Source& source, const PolarMapOptions& options, const Seeds& seeds) const {
+  return detail::with_memory_check("a polar map", [&] {
+    Fronts fronts(*this);
+    return polar_map(fronts.around(source, seeds, options, true), source, options);
   });
 }
 
@@ -215,19 +299,66 @@ LogMap PolarMapSolver::log_map(const SurfacePoint& source, const std::optional<V
                                const PolarMapOptions& options) const {
   if (surface_ == nullptr)
     throw InvalidArgument("the solver was built for a graph; for points of a surface build it for the surface");
-  return seeded_map(surface_->source(source, u_axis).source, options, [&](const ExactMapOptions& exact) {
-    return geodesics_ ? geodesics_->seeds(source, u_axis, exact) : std::vector<Wavefront::Seed>();
-  });
+  return log_map(surface_->source(source, u_axis).source, options, seeds_of(source, u_axis));
 }
 
 LogMap PolarMapSolver::log_map(Vertex source, const PolarMapOptions& options) const {
-  return seeded_map(Source::at_vertex(source), options, [&](const ExactMapOptions& exact) {
-    return geodesics_ ? geodesics_->seeds(source, exact) : std::vector<Wavefront::Seed>();
-  });
+  return log_map(Source::at_vertex(source), options, seeds_of(source));
 }
 
 LogMap PolarMapSolver::log_map(const Source& source, const PolarMapOptions& options) const {
-  return seeded_map(source, options, [](const ExactMapOptions&) { return std::vector<Wavefront::Seed>(); });
+  return log_map(source, options, Seeds());
+}
+
+namespace {
+
+void check(const LocalMapOptions& options) {
+  if (options.method && *options.method != Method::polar)
+    throw InvalidArgument("method is " + std::string(to_string(*options.method)) +
+                          "; this solver makes polar maps, use local_maps or row_local_maps");
+}
+
+/// Options of the small maps of `local_maps`.
+PolarMapOptions small_map_options(const LocalMapOptions& options) {
+  return {.frames = true, .progress = {{}, options.heat.progress.stop}};
+}
+
+}  // namespace
+
+LocalMaps PolarMapSolver::local_maps(std::span<const Vertex> sources, const LocalMapOptions& options) const {
+  check(options);
+  std::vector<Source> from;
+  from.reserve(sources.size());
+  for (const Vertex vertex : sources) from.push_back(Source::at_vertex(vertex));
+  return local_maps(from, options, [&](std::size_t s) { return seeds_of(sources[s]); });
+}
+
+LocalMaps PolarMapSolver::local_maps(std::span<const SurfacePoint> sources, const LocalMapOptions& options,
+                                     const std::optional<Vec3>& u_axis) const {
+  check(options);
+  if (surface_ == nullptr)
+    throw InvalidArgument("the solver was built for a graph; for points of a surface build it for the surface");
+  std::vector<Source> from;
+  from.reserve(sources.size());
+  for (const SurfacePoint& point : sources) from.push_back(surface_->source(point, u_axis).source);
+  return local_maps(from, options, [&](std::size_t s) { return seeds_of(sources[s], u_axis); });
+}
+
+LocalMaps PolarMapSolver::local_maps(std::span<const Source> sources, const LocalMapOptions& options) const {
+  check(options);
+  return local_maps(sources, options, [](std::size_t) { return Seeds(); });
+}
+
+LocalMaps PolarMapSolver::local_maps(std::span<const Source> sources, const LocalMapOptions& options,
+                                     const std::function<Seeds(std::size_t)>& seeds) const {
+  const auto make_front = [&]() -> LocalFront {
+    return [&, fronts = std::make_shared<Fronts>(*this), small = small_map_options(options)](
+               std::size_t s, double radius) mutable -> const Wavefront& {
+      small.radius = radius;
+      return fronts->around(sources[s], seeds(s), small, false);
+    };
+  };
+  return local_polar_maps(*graph_, sources, options, make_front);
 }
 
 Method choose_method(const TangentGraph& graph) { return graph.is_delaunay() ? Method::polar : Method::heat; }

@@ -105,53 +105,115 @@ RowLocalMaps keep_rows(LocalMaps&& maps, const RowMap& rows, Index most) {
   return std::move(maps).renamed(std::move(neighbors));
 }
 
-/// @param sources  vertices or `Source` objects
-template <class From>
-RowLocalMaps to_rows(const Surface& surface, std::span<const From> sources, const LocalMapOptions& options) {
+/// Local maps by rows.
+/// @param maps  maps(options): local maps of the sources
+template <class Maps>
+RowLocalMaps to_rows(const Surface& surface, const LocalMapOptions& options, const Maps& maps_of) {
   const RowMap& rows = surface.rows();
   const bool all_on_rows = !has_virtual_vertices(rows);
   LocalMapOptions wanted = options;
   wanted.bound_by_straight_line = true;
   if (!all_on_rows && options.radius > 0) wanted.k = 0;
   while (true) {
-    LocalMaps all = local_maps(surface.graph(), sources, wanted);
+    LocalMaps all = maps_of(wanted);
     const std::vector<Offset> found = all.indptr;
     RowLocalMaps maps = keep_rows(std::move(all), rows, options.k);
     if (all_on_rows || options.radius > 0 || wanted.k >= rows.vertex_count()) return maps;
     // Some of the nearest vertices may be virtual. Then more are requested, as long as there are more.
     bool enough = true;
-    for (std::size_t s = 0; s < sources.size() && enough; ++s)
+    for (std::size_t s = 0; s + 1 < found.size() && enough; ++s)
       enough = maps.indptr[s + 1] - maps.indptr[s] == options.k || found[s + 1] - found[s] < wanted.k;
     if (enough) return maps;
     wanted.k = std::min(2 * wanted.k, rows.vertex_count());
   }
 }
 
+/// The vertices of all rows that have one.
+struct AllRows {
+  std::vector<Vertex> vertices;
+  std::vector<std::size_t> rows;
+
+  explicit AllRows(const RowMap& map) {
+    for (Row row(0); row.index < map.row_count(); ++row.index)
+      if (const auto vertex = map.vertex(row)) {
+        vertices.push_back(*vertex);
+        rows.push_back(static_cast<std::size_t>(row.index));
+      }
+  }
+
+  /// Adds the rows without a vertex, which have no entries.
+  RowLocalMaps spread(RowLocalMaps maps, Index row_count) const {
+    std::vector<Offset> indptr(static_cast<std::size_t>(row_count) + 1, 0);
+    for (std::size_t k = 0; k < rows.size(); ++k) indptr[rows[k] + 1] = maps.indptr[k + 1] - maps.indptr[k];
+    std::partial_sum(indptr.begin(), indptr.end(), indptr.begin());
+    maps.indptr = std::move(indptr);
+    return maps;
+  }
+};
+
+bool is_heat(const Surface& surface, const LocalMapOptions& options) {
+  const Method method = options.method.value_or(surface.suggested_method());
+  if (method == Method::exact)
+    throw InvalidArgument("method_not_local", "method is exact; local maps are polar or by heat",
+                          "use polar: inside small radii its windows are exact");
+  return method == Method::heat;
+}
+
+LocalMapOptions with_heat(LocalMapOptions options) {
+  options.method = Method::heat;
+  return options;
+}
+
+const Surface& surface_of(const PolarMapSolver& solver) {
+  if (solver.surface() == nullptr)
+    throw InvalidArgument("the solver was built for a graph, which has no rows; use PolarMapSolver::local_maps");
+  return *solver.surface();
+}
+
 }  // namespace
 
+RowLocalMaps row_local_maps(const PolarMapSolver& solver, std::span<const Vertex> sources,
+                            const LocalMapOptions& options) {
+  return to_rows(surface_of(solver), options, [&](const LocalMapOptions& o) { return solver.local_maps(sources, o); });
+}
+
+RowLocalMaps row_local_maps(const PolarMapSolver& solver, std::span<const SurfacePoint> sources,
+                            const LocalMapOptions& options, const std::optional<Vec3>& u_axis) {
+  return to_rows(surface_of(solver), options,
+                 [&](const LocalMapOptions& o) { return solver.local_maps(sources, o, u_axis); });
+}
+
+RowLocalMaps row_local_maps(const PolarMapSolver& solver, const LocalMapOptions& options) {
+  const RowMap& rows = surface_of(solver).rows();
+  const AllRows all(rows);
+  return all.spread(row_local_maps(solver, all.vertices, options), rows.row_count());
+}
+
 RowLocalMaps row_local_maps(const Surface& surface, std::span<const Vertex> sources, const LocalMapOptions& options) {
-  return to_rows(surface, sources, options);
+  if (!is_heat(surface, options))
+    return row_local_maps(PolarMapSolver(surface, {.threads = options.heat.threads}), sources, options);
+  return to_rows(surface, with_heat(options),
+                 [&](const LocalMapOptions& o) { return local_maps(surface.graph(), sources, o); });
+}
+
+RowLocalMaps row_local_maps(const Surface& surface, std::span<const SurfacePoint> sources,
+                            const LocalMapOptions& options, const std::optional<Vec3>& u_axis) {
+  if (!is_heat(surface, options))
+    return row_local_maps(PolarMapSolver(surface, {.threads = options.heat.threads}), sources, options, u_axis);
+  std::vector<Source> from;
+  from.reserve(sources.size());
+  for (const SurfacePoint& point : sources) from.push_back(surface.source(point, u_axis).source);
+  return row_local_maps(surface, std::span<const Source>(from), with_heat(options));
 }
 
 RowLocalMaps row_local_maps(const Surface& surface, std::span<const Source> sources, const LocalMapOptions& options) {
-  return to_rows(surface, sources, options);
+  return to_rows(surface, options,
+                 [&](const LocalMapOptions& o) { return local_maps(surface.graph(), sources, o); });
 }
 
 RowLocalMaps row_local_maps(const Surface& surface, const LocalMapOptions& options) {
-  const auto rows = static_cast<std::size_t>(surface.rows().row_count());
-  std::vector<Vertex> vertices;
-  std::vector<std::size_t> row_of;
-  for (std::size_t r = 0; r < rows; ++r)
-    if (const auto vertex = surface.rows().vertex(Row(static_cast<Index>(r)))) {
-      vertices.push_back(*vertex);
-      row_of.push_back(r);
-    }
-  RowLocalMaps maps = row_local_maps(surface, vertices, options);
-  std::vector<Offset> indptr(rows + 1, 0);
-  for (std::size_t k = 0; k < row_of.size(); ++k) indptr[row_of[k] + 1] = maps.indptr[k + 1] - maps.indptr[k];
-  std::partial_sum(indptr.begin(), indptr.end(), indptr.begin());
-  maps.indptr = std::move(indptr);
-  return maps;
+  const AllRows all(surface.rows());
+  return all.spread(row_local_maps(surface, all.vertices, options), surface.rows().row_count());
 }
 
 }  // namespace ahm

@@ -86,6 +86,12 @@ struct SurfaceSolver::Impl {
     return result;
   }
 
+  /// The options with a method. Inside small radii polar maps are exact.
+  LocalMapOptions local_options(LocalMapOptions o) const {
+    if (!o.method) o.method = method == Method::heat ? Method::heat : Method::polar;
+    return o;
+  }
+
   SurfaceLogMap with_rows(SurfaceSource source, LogMap map, unsigned map_threads) const {
     RowLogMap rows = surface->to_rows(map, map_threads);
     return {std::move(rows), std::move(source), std::move(map)};
@@ -203,13 +209,18 @@ SurfacePath SurfaceSolver::trace(const Location& start, const Vec3& direction, d
 }
 
 RowLocalMaps SurfaceSolver::local_maps(const LocalMapOptions& options) const {
-  return row_local_maps(surface(), options);
+  const LocalMapOptions own = impl_->local_options(options);
+  return impl_->polar && own.method == Method::polar ? row_local_maps(*impl_->polar, own)
+                                                     : row_local_maps(surface(), own);
 }
 
 RowLocalMaps SurfaceSolver::local_maps(const std::vector<Location>& sources, const LocalMapOptions& options) const {
-  std::vector<Source> from;
-  for (const Location& source : sources) from.push_back(surface().source(source.on(surface())).source);
-  return row_local_maps(surface(), from, options);
+  const LocalMapOptions own = impl_->local_options(options);
+  std::vector<SurfacePoint> from;
+  from.reserve(sources.size());
+  for (const Location& source : sources) from.push_back(source.on(surface()));
+  return impl_->polar && own.method == Method::polar ? row_local_maps(*impl_->polar, from, own)
+                                                     : row_local_maps(surface(), from, own);
 }
 
 SurfaceLogMap log_map(const Surface& surface, const Location& source, const SurfaceMapOptions& options,

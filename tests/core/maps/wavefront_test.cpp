@@ -200,6 +200,31 @@ TEST(Wavefront, StopsAtTheRadiusAndAtTheComponent) {
   }
 }
 
+TEST(Wavefront, IsAsNewAfterClear) {
+  for (const CsrGraphData& data : {sphere_graph(800), planar_triangulation(20).data, lattice3(6).data}) {
+    const CsrGraph graph(data);
+    Wavefront used(graph, nullptr, true), fresh(graph, nullptr, true);
+    for (const Index v : {0, 100, 7}) used.add(Source::at_vertex(Vertex(v)));
+    used.run(8 * graph.mean_edge_length());
+    used.clear();
+    EXPECT_EQ(used.points(), 0);
+    EXPECT_TRUE(used.reached().empty());
+    for (Wavefront* front : {&used, &fresh}) {
+      front->add(Source::at_vertex(Vertex(50)));
+      front->run(4 * graph.mean_edge_length());
+    }
+    std::vector<Vertex> reached = used.reached();
+    EXPECT_EQ(reached, fresh.reached());
+    std::ranges::sort(reached);
+    for (Vertex v(0); v.index < graph.size(); ++v.index) {
+      EXPECT_EQ(used.distance(v), fresh.distance(v));
+      EXPECT_EQ(std::ranges::binary_search(reached, v), std::isfinite(fresh.distance(v)));
+      if (data.dimension == 2 && fresh.distance(v) > 0 && std::isfinite(fresh.distance(v)))
+        EXPECT_EQ(used.direction(v), fresh.direction(v));
+    }
+  }
+}
+
 TEST(Wavefront, ScalesByPowersOfTwoToTheBit) {
   const auto a = distances(CsrGraph(tube(20, 9)), source_at(4)),
              b = distances(CsrGraph(scaled(tube(20, 9), 0x1p40)), source_at(4));

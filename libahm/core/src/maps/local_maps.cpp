@@ -9,7 +9,6 @@
 
 #include "ahm/error.hpp"
 #include "ahm/graph/validate.hpp"
-#include "ahm/maps/cost.hpp"
 #include "ahm/maps/straight_line.hpp"
 #include "ahm/util/memory.hpp"
 #include "ahm/util/parallel.hpp"
@@ -17,6 +16,7 @@
 #include "ahm/util/text.hpp"
 #include "ahm/util/vec.hpp"
 #include "maps/affine_heat.hpp"
+#include "maps/local_map_parts.hpp"
 #include "maps/one_rings.hpp"
 #include "maps/patch_maps.hpp"
 
@@ -106,69 +106,23 @@ constexpr double usual_detour = 1.2;
 constexpr double largest_detour = 2;
 
 void check(const TangentGraph& graph, std::span<const Source> sources, const LocalMapOptions& options) {
-  if (options.k < 0) throw InvalidArgument("k is " + std::to_string(options.k) + "; it must be >= 0 (0: all)");
-  const bool by_number = options.radius == 0 && options.k > 0;
-  if (!by_number && (!(options.radius > 0) || !std::isfinite(options.radius)))
-    throw InvalidArgument("radius is " + detail::number(options.radius) +
-                          "; it must be finite and > 0, or 0 if `k` is > 0");
+  check_extent(options);
+  if (options.method && *options.method != Method::heat)
+    throw InvalidArgument("method is " + std::string(to_string(*options.method)) +
+                          "; local maps of a graph are by heat, use PolarMapSolver::local_maps or row_local_maps");
   check_patches(graph, sources, options.heat, options.margin);
 }
 
-/// Radius of each map, world units: the radius of the options, or the length of the edge path to the last of the nearest neighbors,
-/// which is an upper bound of its distance.
+/// Radius of each map, world units: the radius of the options, or that of the nearest neighbors.
 std::vector<double> radii_of(const TangentGraph& graph, std::span<const Source> sources,
                              const LocalMapOptions& options) {
   std::vector<double> radii(sources.size(), options.radius);
   if (options.radius > 0) return radii;
   Ball ball(graph);
-  for (std::size_t s = 0; s < sources.size(); ++s) {
-    Index count = 0;
-    ball.grow(sources[s].vertices(), std::numeric_limits<double>::infinity(), [&](Index, double distance) {
-      radii[s] = std::max(distance, graph.mean_edge_length() / 4) * graph.length_unit();
-      return ++count < options.k;
-    });
-  }
+  for (std::size_t s = 0; s < sources.size(); ++s)
+    radii[s] = radius_of_nearest(graph, ball, sources[s], options.k).radius;
   return radii;
 }
-
-/// Smallest number of bytes per entry of the result.
-double entry_bytes(const TangentGraph& graph) {
-  return static_cast<double>(2 * sizeof(Index) + sizeof(double) * (2 + static_cast<std::size_t>(graph.dimension()) +
-                                                                   graph.transport_layout().width()));
-}
-
-/// Throws if the maps of half of the sources would exceed the memory. Estimates the median number of vertices within the radius from
-/// a sample of the sources.
-void check_memory(const TangentGraph& graph, std::span<const Source> sources, std::span<const double> radii,
-                  const LocalMapOptions& options) {
-  const double memory = options.memory > 0 ? static_cast<double>(options.memory) : machine_memory();
-  if (!(memory > 0) || sources.empty()) return;
-  const double half = 0.5 * static_cast<double>(sources.size()) * entry_bytes(graph), enough = memory / half;
-  if (enough >= graph.size()) return;
-  constexpr std::size_t most = 15;
-  const std::size_t samples = std::min(most, sources.size());
-  std::vector<double> counts;
-  Ball ball(graph);
-  for (std::size_t k = 0; k < samples; ++k) {
-    const std::size_t s = (2 * k + 1) * sources.size() / (2 * samples);
-    double count = 0;
-    ball.grow(sources[s].vertices().first(1), radii[s] / graph.length_unit(),
-              [&](Index, double) { return options.k == 0 || count < options.k ? ++count <= enough : false; });
-    counts.push_back(count);
-  }
-  std::sort(counts.begin(), counts.end());
-  if (const double count = counts[samples / 2]; count > enough)
-    throw ResourceExhausted("half of the " + std::to_string(sources.size()) + " local maps would contain more than " +
-                            detail::number(std::floor(enough)) + " vertices each, which exceeds the memory of " +
-                            detail::gigabytes(memory) +
-                            "; use a smaller radius, fewer sources, or only the nearest vertices");
-}
-
-/// The entries of one source.
-struct Entries {
-  std::vector<Vertex> vertices;
-  std::vector<double> logs, distances, transports;
-};
 
 class Worker {
  public:
@@ -182,7 +136,7 @@ class Worker {
         d_(static_cast<std::size_t>(graph.dimension())) {}
 
   /// Solves the sources of one group on one patch. Writes result[s] for each source s.
-  void solve(std::span<const Index> members, std::vector<Entries>& result) {
+  void solve(std::span<const Index> members, std::vector<LocalEntries>& result) {
     std::vector<Source> sources;
     for (Index s : members) sources.push_back(sources_[s]);
     const double unit = graph_.length_unit(), margin = options_.margin * patches_.sqrt_tau(sources);
@@ -271,7 +225,7 @@ class Worker {
 
   std::span<double> distances(std::size_t m, std::size_t n) { return std::span(distances_).subspan(m * n, n); }
 
-  Outcome collect(PatchMaps& patch, std::span<const Index> members, double wanted, std::vector<Entries>& result) {
+  Outcome collect(PatchMaps& patch, std::span<const Index> members, double wanted, std::vector<LocalEntries>& result) {
     if (!graph_.is_delaunay()) patch.heat->solve_squares(), patch.heat->solve_lengths();
     for (std::size_t m = 0; m < members.size(); ++m) {
       const Outcome outcome = collect(patch, m, members[m], wanted, result[members[m]]);
@@ -292,7 +246,7 @@ class Worker {
   /// Collects the vertices within the radius, nearest first.
   /// @param m       number of the source in the patch
   /// @param source  number of the source among all sources
-  Outcome collect(const PatchMaps& patch, std::size_t m, Index source, double wanted, Entries& entries) {
+  Outcome collect(const PatchMaps& patch, std::size_t m, Index source, double wanted, LocalEntries& entries) {
     const double radius = radii_[source];
     const std::size_t n = patch.vertices.size();
     const AffineHeat& heat = *patch.heat;
@@ -354,38 +308,6 @@ class Worker {
   std::vector<std::pair<double, Index>> order_;  ///< distance and number of vertices within the radius, nearest first
 };
 
-/// Concatenates a column of all entries. Frees the parts one by one, so that the peak memory is little more than the result.
-template <class T>
-void join(std::vector<Entries>& entries, std::vector<T> Entries::*column, std::size_t total, std::vector<T>& out) {
-  out.reserve(total);
-  for (Entries& e : entries) {
-    out.insert(out.end(), (e.*column).begin(), (e.*column).end());
-    e.*column = {};
-  }
-}
-
-LocalMaps joined(const TangentGraph& graph, std::vector<Entries>& entries, unsigned threads) {
-  LocalMaps maps;
-  maps.dimension = graph.dimension();
-  maps.kind = graph.transport_kind();
-  maps.indptr.push_back(0);
-  for (const Entries& e : entries) maps.indptr.push_back(maps.indptr.back() + static_cast<Offset>(e.vertices.size()));
-  const auto total = static_cast<std::size_t>(maps.indptr.back());
-  const auto join_vertices = [&] {
-    maps.weights.reserve(total);
-    for (const Entries& e : entries)
-      for (const Vertex j : e.vertices) maps.weights.push_back(world_mass(graph, graph.mass(j.index)));
-    join(entries, &Entries::vertices, total, maps.neighbors);
-  };
-  const auto join_numbers = [&] {
-    join(entries, &Entries::distances, total, maps.distances);
-    join(entries, &Entries::transports, total * maps.transport_width(), maps.transports);
-    join(entries, &Entries::logs, total * static_cast<std::size_t>(graph.dimension()), maps.logs);
-  };
-  detail::run_both(threads, join_numbers, join_vertices);
-  return maps;
-}
-
 }  // namespace
 
 LocalMaps local_maps(const TangentGraph& graph, std::span<const Source> sources, const LocalMapOptions& options) {
@@ -394,15 +316,18 @@ LocalMaps local_maps(const TangentGraph& graph, std::span<const Source> sources,
     options.heat.progress.step("group", 0.0);
     const ComponentScales scales(graph);
     std::vector<double> radii = radii_of(graph, sources, options), extent;
-    check_memory(graph, sources, radii, options);
+    check_memory(
+        graph, sources, [&](std::size_t s) { return radii[s]; }, options);
     for (const double radius : radii) extent.push_back(radius / graph.length_unit());
     const auto groups = patch_groups(graph, scales, sources, extent, options.heat, options.margin);
-    std::vector<Entries> entries(sources.size());
+    std::vector<LocalEntries> entries(sources.size());
     share_groups(
         groups, options.heat.threads, options.heat.progress,
         [&] { return std::make_unique<Worker>(graph, scales, sources, radii, options); },
         [&](Worker& worker, const std::vector<Index>& group) { worker.solve(group, entries); });
-    return joined(graph, entries, options.heat.threads);
+    std::vector<Offset> indptr{0};
+    for (const LocalEntries& e : entries) indptr.push_back(indptr.back() + static_cast<Offset>(e.vertices.size()));
+    return joined(graph, std::move(indptr), entries, options.heat.threads);
   });
 }
 

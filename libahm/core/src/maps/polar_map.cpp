@@ -12,6 +12,7 @@
 #include "ahm/util/text.hpp"
 #include "ahm/util/vec.hpp"
 #include "maps/affine_heat.hpp"
+#include "maps/carried_axes.hpp"
 
 namespace ahm {
 namespace {
@@ -39,16 +40,6 @@ std::vector<double> jumps(const TangentGraph& graph, std::span<const double> coo
     }
   }
   return jump;
-}
-
-/// The source's axes, parallel transported along the path to a vertex: the rotation (or reflection) that maps the direction of departure to
-/// that of arrival; row major.
-std::array<double, 4> carried_axes(const Vec2& departure, const Vec2& arrival, bool mirrored) {
-  const double side = mirrored ? -1 : 1;
-  // rotation(arrival) diag(1, side) rotation(-departure)
-  const Vec2 u{arrival[0] * departure[0] + side * arrival[1] * departure[1],
-               arrival[1] * departure[0] - side * arrival[0] * departure[1]};
-  return {u[0], -side * u[1], u[1], side * u[0]};
 }
 
 /// Axes of each vertex, row major: the source's axes at the source's vertices, the identity elsewhere.

@@ -105,8 +105,11 @@ struct Wavefront::Impl {
 
   Impl(const TangentGraph& graph, std::shared_ptr<const OneRings> one_rings, bool directions);
   Index add(const Source& source);
+  void clear();
+  void forget();
   void restart(std::span<const Seed> seeds);
   void run(double radius, const std::stop_token& stop);
+  std::vector<Vertex> reached() const;
   double next() const {
     return queue_.empty() ? std::numeric_limits<double>::infinity()
                           : (queue_.top().distance - longest_) * graph_.length_unit();
@@ -150,11 +153,15 @@ struct Wavefront::Impl {
 
   const TangentGraph& graph_;
   std::size_t d_;
-  std::vector<Index> first_;  ///< first entry of each vertex or midpoint; -1: none
+  std::vector<Index> first_;    ///< first entry of each vertex or midpoint; -1: none
+  std::vector<Index> touched_;  ///< vertices and midpoints with entries
   std::vector<Entry> entries_;
   std::array<std::vector<Index>, 4> free_;  ///< unused blocks of 1, 2, 4 and 8 entries
   std::vector<double> displacements_;       ///< d per entry: from the vertex to the point, vertex frame; d = 2: empty
   double longest_ = 0;  ///< longest edge passed: a path of length L crosses no side with an end beyond L + `longest_`
+  /// Radius of `run`, and the longest edge passed that a path of this length may cross: one whose nearer end is at most half of the
+  /// edge's length farther.
+  double limit_ = 0, longest_within_ = 0;
   double missed_;       ///< tolerance of `across_side`: share of a side by which a line may miss it
   bool is_curved_;      ///< whether paths carry the curvature of the front: on Delaunay triangulations
   bool directions_;
@@ -162,7 +169,10 @@ struct Wavefront::Impl {
   std::vector<double>
       curvatures_;           ///< curvature of vertices not in `one_rings_`, empty until used; NaN: not computed yet
   std::vector<Path> paths_;  ///< paths of the entries; empty without directions
-  std::priority_queue<QueueEntry, std::vector<QueueEntry>, std::greater<>> queue_;
+  struct Queue : std::priority_queue<QueueEntry, std::vector<QueueEntry>, std::greater<>> {
+    void clear() { c.clear(); }
+  };
+  Queue queue_;
   std::shared_ptr<const OneRings> one_rings_;
   std::vector<CachedRing>
       ring_cache_;  ///< cache of one-rings that are not in `one_rings_`, indexed by the vertex modulo its size
@@ -275,11 +285,36 @@ void Wavefront::Impl::offer_midpoints(std::vector<NearVertex>& given) {
   }
 }
 
+/// Removes the entries of all vertices.
+void Wavefront::Impl::forget() {
+  for (const Index vertex : touched_) first_[vertex] = none;
+  touched_.clear();
+  entries_.clear();
+  displacements_.clear();
+  paths_.clear();
+  for (std::vector<Index>& rows : free_) rows.clear();
+  queue_.clear();
+}
+
+void Wavefront::Impl::clear() {
+  forget();
+  points_ = 0;
+  of_curve_ = false;
+  longest_ = 0;
+}
+
+std::vector<Vertex> Wavefront::Impl::reached() const {
+  std::vector<Vertex> vertices;
+  vertices.reserve(touched_.size());
+  for (const Index vertex : touched_)
+    if (vertex < graph_.size()) vertices.emplace_back(vertex);
+  return vertices;
+}
+
 void Wavefront::Impl::restart(std::span<const Seed> seeds) {
   struct Start {
     double focusing = 0;
     float widening = 0;
-    bool mirrored = false;
   };
   std::vector<Start> starts;
   starts.reserve(seeds.size());
@@ -291,17 +326,13 @@ void Wavefront::Impl::restart(std::span<const Seed> seeds) {
   std::vector<Neighboring> beside_point;  // a seed at its point has no direction that its neighbors could take over
   for (const Seed& seed : seeds) {
     const Entry* const found = find(seed.vertex.index, seed.point);
-    starts.push_back(found ? Start{found->focusing, paths_[number(*found)].widening, paths_[number(*found)].mirrored}
-                           : Start{});
+    starts.push_back(found ? Start{found->focusing, paths_[number(*found)].widening} : Start{});
     if (!std::isnan(seed.direction[0])) continue;
     for (const Corner& corner : one_ring(seed.vertex.index))
       if (const Entry* const next = find(corner.neighbor, seed.point))
         beside_point.push_back({corner.neighbor, *next, paths_[number(*next)]});
   }
-  std::ranges::fill(first_, none);
-  entries_.clear();
-  paths_.clear();
-  for (std::vector<Index>& rows : free_) rows.clear();
+  forget();
   for (std::size_t k = 0; k < seeds.size(); ++k) {
     const Index vertex = seeds[k].vertex.index;
     offer(vertex, seeds[k].point, seeds[k].distance / graph_.length_unit(), 0, {},
@@ -309,17 +340,19 @@ void Wavefront::Impl::restart(std::span<const Seed> seeds) {
            .arrival = seeds[k].arrival,
            .variance = static_cast<float>(4 * seeds[k].error * seeds[k].error),
            .widening = starts[k].widening,
-           .mirrored = starts[k].mirrored},
+           .mirrored = seeds[k].mirrored},
           starts[k].focusing);
     entries_[first_[vertex]].gains = most_gains;  // prevents improvements
   }
   // Only seeds with a neighbor that is not a seed need to spread.
-  queue_ = {};
+  queue_.clear();
+  longest_ = 0;
   for (const Seed& seed : seeds) {
     const Index vertex = seed.vertex.index;
-    const auto is_free = [&](const Corner& corner) { return first_[corner.neighbor] == none; };
-    if (std::ranges::any_of(one_ring(vertex), is_free))
-      queue_.push({entries_[first_[vertex]].distance, vertex, seed.point});
+    const std::span<const Corner> ring = one_ring(vertex);
+    if (std::ranges::none_of(ring, [&](const Corner& corner) { return first_[corner.neighbor] == none; })) continue;
+    queue_.push({entries_[first_[vertex]].distance, vertex, seed.point});
+    for (const Corner& corner : ring) longest_ = std::max(longest_, corner.length);
   }
   for (const auto& [vertex, entry, path] : beside_point)
     if (first_[vertex] == none) offer(vertex, entry.point, entry.distance, 0, {}, path, entry.focusing);
@@ -327,7 +360,9 @@ void Wavefront::Impl::restart(std::span<const Seed> seeds) {
 
 void Wavefront::Impl::run(double radius, const std::stop_token& stop) {
   constexpr std::uint32_t between_looks = 4096;
-  for (std::uint32_t taken = 0; !queue_.empty() && next() <= radius; ++taken) {
+  limit_ = radius / graph_.length_unit();
+  longest_within_ = longest_;
+  for (std::uint32_t taken = 0; !queue_.empty() && queue_.top().distance - longest_within_ <= limit_; ++taken) {
     if (taken % between_looks == 0 && stop.stop_requested()) throw Cancelled("cancelled during unfold");
     const auto [distance, vertex, point] = queue_.top();
     queue_.pop();
@@ -458,6 +493,7 @@ void Wavefront::Impl::spread(Index from, Index point, double distance) {
     }
     longest = std::max(longest, corners[k].length);
   }
+  if (distance - longest / 2 <= limit_) longest_within_ = std::max(longest_within_, longest);
   for (std::size_t k = 0; k < degree; ++k) {
     const std::size_t next = k + 1 < degree ? k + 1 : 0;
     const Corner &right = corners[k], &left = corners[next];
@@ -523,6 +559,7 @@ Index Wavefront::Impl::append(Index vertex) {
   Index& first = first_[vertex];
   const std::size_t count = entries_of(vertex).size();
   if (count == 0) {
+    touched_.push_back(vertex);
     first = new_row(1);
   } else if (std::has_single_bit(count)) {
     const Index row = new_row(2 * count);
@@ -611,9 +648,11 @@ Index Wavefront::add(const Source& source) { return impl_->add(source); }
 Index Wavefront::points() const noexcept { return impl_->points_; }
 const TangentGraph& Wavefront::graph() const noexcept { return impl_->graph_; }
 bool Wavefront::has_directions() const noexcept { return impl_->directions_; }
+void Wavefront::clear() { impl_->clear(); }
 void Wavefront::restart(std::span<const Seed> seeds) { impl_->restart(seeds); }
 void Wavefront::run(double radius, const std::stop_token& stop) { impl_->run(radius, stop); }
 double Wavefront::next() const { return impl_->next(); }
+std::vector<Vertex> Wavefront::reached() const { return impl_->reached(); }
 
 double Wavefront::distance(Vertex vertex) const {
   const auto* const entry = impl_->nearest(vertex);

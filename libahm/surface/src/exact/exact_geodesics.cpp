@@ -33,14 +33,27 @@ Vec2 side_between(const exact::PolyhedralSurface& surface, const exact::MeshPoin
   return surface.place(to) - surface.place(from);
 }
 
-/// The angle, in the frame of a vertex, at which its shortest path arrives.
-double arrival_angle(const FlatTriangles& flat, const exact::Arrival& in) {
+/// How a shortest path arrives at a vertex.
+struct VertexArrival {
+  double angle;   ///< its direction, in the frame of the vertex
+  bool mirrored;  ///< whether the last face has the opposite orientation of the frame
+};
+
+/// @param half  half-edge of the last face; the vertex is its apex
+/// @param from  start of the last straight piece, in the frame of the half-edge
+VertexArrival arrival_at(const FlatTriangles& flat, exact::Half half, const Vec2& from) {
   const exact::PolyhedralSurface& surface = flat.surface;
-  const exact::HalfRecord& record = surface.record(in.half);
-  const double back = exact::angle_at_vertex(surface, exact::previous(in.half), exact::in_previous(record, in.from));
-  const double angle = std::numbers::pi + back * surface.angle_scale(record.apex);
-  if (flat.angles.empty()) return angle;
-  return flat.angles[record.apex] + (flat.mirrored[record.apex] ? -angle : angle);
+  const exact::HalfRecord& record = surface.record(half);
+  const auto back = exact::angle_at_vertex(surface, exact::previous(half), exact::in_previous(record, from));
+  const double angle = std::numbers::pi + back.angle * surface.angle_scale(record.apex);
+  if (flat.angles.empty()) return {angle, !back.forward};
+  const bool mirrored = flat.mirrored[record.apex] != 0;
+  return {flat.angles[record.apex] + (mirrored ? -angle : angle), back.forward == mirrored};
+}
+
+/// Whether directions turn clockwise in the frame of a vertex.
+bool mirrored_at(const FlatTriangles& flat, Index vertex) {
+  return !flat.mirrored.empty() && flat.mirrored[vertex] != 0;
 }
 
 /// Converts axes from the frame of a vertex to the plane of its directions.
@@ -261,40 +274,63 @@ ExactGeodesics::PlacedSources ExactGeodesics::at_vertex(const FlatTriangles& fla
   return {{flat.surface.vertex_point(source)}, {from_frame(flat, source.index, {1, 0, 0, 1})}, {}, {Vec2{}}};
 }
 
-std::vector<Wavefront::Seed> ExactGeodesics::seeds(const SurfacePoint& source, const std::optional<Vec3>& u_axis,
-                                                   const ExactMapOptions& options) const {
+ExactGeodesics::Workspace::Workspace(const ExactGeodesics& geodesics)
+    : windows_(std::make_unique<exact::Propagation>(geodesics.flat_.surface, exact::ExactOptions{},
+                                                    std::span<const exact::MeshPoint>())) {}
+ExactGeodesics::Workspace::~Workspace() = default;
+ExactGeodesics::Workspace::Workspace(Workspace&&) noexcept = default;
+ExactGeodesics::Workspace& ExactGeodesics::Workspace::operator=(Workspace&&) noexcept = default;
+
+ExactGeodesics::Seeds ExactGeodesics::seeds(const SurfacePoint& source, const std::optional<Vec3>& u_axis,
+                                            const ExactMapOptions& options, Workspace& workspace) const {
   const ExactSource one{source, u_axis};
-  return seeds(placed(std::span(&one, 1)), options);
+  return seeds(placed(std::span(&one, 1)), options, workspace);
 }
 
-std::vector<Wavefront::Seed> ExactGeodesics::seeds(Vertex source, const ExactMapOptions& options) const {
-  return seeds(at_vertex(flat_, source), options);
+ExactGeodesics::Seeds ExactGeodesics::seeds(Vertex source, const ExactMapOptions& options, Workspace& workspace) const {
+  return seeds(at_vertex(flat_, source), options, workspace);
 }
 
-std::vector<Wavefront::Seed> ExactGeodesics::seeds(const PlacedSources& from, const ExactMapOptions& options) const {
-  const exact::ExactMap exact = exact_map(from, options);
-  std::vector<Wavefront::Seed> seeds;
-  for (Index i = 0; i < exact.size(); ++i) {
-    const Vertex v(i);
-    if (exact.status(v) != Status::ok) continue;
-    const exact::Arrival& in = exact.arrival(v);
-    const double angle = options.frames && in.half >= 0 ? arrival_angle(flat_, in) : NAN;
-    const double departure = exact.distance(v) > 0 ? exact.direction(v) : NAN;
-    seeds.push_back({v,
-                     flat_.length_unit * exact.distance(v),
-                     in_axes(from.axes[exact.source(v)], {std::cos(departure), std::sin(departure)}),
-                     {std::cos(angle), std::sin(angle)},
-                     exact.source(v)});
+ExactGeodesics::Seeds ExactGeodesics::seeds(const PlacedSources& from, const ExactMapOptions& options,
+                                            Workspace& workspace) const {
+  exact::Propagation& windows = *workspace.windows_;
+  windows.clear(window_options(options));
+  const exact::MeshPoint source = exact::checked(flat_.surface, from.points[0], "source");
+  windows.add_source(source);
+  windows.run(options.progress);
+  windows.check_reached();
+  const Index vertex = windows.origin(0).vertex;
+  const double scale = vertex >= 0 ? flat_.surface.angle_scale(vertex) : 1;
+  const Axes& axes = from.axes[0];
+  const bool mirrored_source = axes[0] * axes[3] < axes[1] * axes[2];
+  Seeds seeds{{}, flat_.length_unit * windows.horizon()};
+  for (const Index v : windows.touched()) {
+    const double distance = windows.distance_of(v);
+    if (!(distance <= windows.horizon())) continue;
+    const exact::ArrivalRecord& in = windows.arrival_of(v);
+    const VertexArrival arrival = options.frames && in.half >= 0
+                                      ? arrival_at(flat_, in.half, in.from)
+                                      : VertexArrival{NAN, mirrored_at(flat_, v)};
+    const double departure = distance > 0 ? scale * in.direction : NAN;
+    seeds.vertices.push_back({.vertex = Vertex(v),
+                              .distance = flat_.length_unit * distance,
+                              .direction = in_axes(axes, {std::cos(departure), std::sin(departure)}),
+                              .arrival = {std::cos(arrival.angle), std::sin(arrival.angle)},
+                              .mirrored = (mirrored_source != in.mirrored) != arrival.mirrored});
   }
   return seeds;
 }
 
+exact::ExactOptions ExactGeodesics::window_options(const ExactMapOptions& options) const {
+  exact::ExactOptions result;
+  result.radius = options.radius / flat_.length_unit;
+  result.max_windows = options.max_windows;
+  result.progress = options.progress;
+  return result;
+}
+
 exact::ExactMap ExactGeodesics::exact_map(const PlacedSources& from, const ExactMapOptions& options) const {
-  exact::ExactOptions exact_options;
-  exact_options.radius = options.radius / flat_.length_unit;
-  exact_options.max_windows = options.max_windows;
-  exact_options.progress = options.progress;
-  return exact::exact_map(flat_.surface, from.points, exact_options);
+  return exact::exact_map(flat_.surface, from.points, window_options(options));
 }
 
 LabelledLogMap ExactGeodesics::log_map(std::span<const ExactSource> sources, const ExactMapOptions& options) const {
@@ -327,7 +363,7 @@ LabelledLogMap ExactGeodesics::log_map(const PlacedSources& from, Source source,
     if (!options.frames) continue;
     Axes frame{1, 0, 0, 1};
     if (exact.status(v) == Status::ok)
-      frame = exact.arrival(v).half >= 0 ? axes_at(arrival_angle(flat_, exact.arrival(v)) - std::atan2(phi[1], phi[0]))
+      frame = exact.arrival(v).half >= 0 ? axes_at(arrival_at(flat_, exact.arrival(v).half, exact.arrival(v).from).angle - std::atan2(phi[1], phi[0]))
                                          : in_frame(flat_, i, a);
     extras.frames.insert(extras.frames.end(), frame.begin(), frame.end());
   }

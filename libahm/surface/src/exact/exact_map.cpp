@@ -32,27 +32,8 @@ PropagationResult propagate(const PolyhedralSurface& surface, std::span<const Me
   Propagation windows(surface, options, targets);
   for (const MeshPoint& p : sources) windows.add_source(p);
   windows.run(options.progress);
+  windows.check_reached();
   return std::move(windows).found();
-}
-
-/// Checks that no vertex is farther than a neighbor plus the side between them. Otherwise windows were lost, which happens in
-/// needles with angles near the rounding error.
-void check_reached(const PolyhedralSurface& surface, const PropagationResult& found) {
-  const std::span<const double> distance = found.distance;
-  const auto check = [&](Index from, Index to, double length) {
-    const double way = (distance[from] + length) * (1 + 1e-9);
-    if (!(way < found.horizon) || distance[to] <= way) return;
-    throw InvalidGeometry(
-        "windows_lost",
-        "windows were lost before they reached vertex " + std::to_string(to) + ", a neighbor of vertex " +
-            std::to_string(from),
-        "repair the needle triangles there, or use the polar or the heat method (paths: locally_shortest_path)");
-  };
-  for (Half h = 0; h < 3 * surface.face_count(); ++h) {
-    const HalfRecord r = surface.record(h);
-    check(r.tail, r.head, r.length);
-    check(r.head, r.tail, r.length);
-  }
 }
 
 /// The component of a point, as the number of the vertex that represents it.
@@ -128,7 +109,6 @@ ExactMap exact_map(const PolyhedralSurface& surface, std::span<const MeshPoint> 
     for (const MeshPoint& p : sources) from.push_back(checked(surface, p, "source"));
     for (const MeshPoint& p : options.targets) to.push_back(checked(surface, p, "target"));
     PropagationResult found = propagate(surface, from, to, options);
-    check_reached(surface, found);
     return MapBuilder(surface, std::move(from), std::move(to)).build(std::move(found));
   });
 }

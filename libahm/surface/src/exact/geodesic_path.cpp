@@ -149,11 +149,11 @@ double angle_in_face(const PolyhedralSurface& surface, const Line& line) {
   return std::atan2(seen.direction[1], seen.direction[0]);
 }
 
-double angle_at_vertex(const PolyhedralSurface& surface, Half corner, const Place& towards) {
+VertexAngle angle_at_vertex(const PolyhedralSurface& surface, Half corner, const Place& towards) {
   const double width = surface.angle(corner), within = std::clamp(std::atan2(towards[1], towards[0]), 0.0, width);
   double turned = 0;
   for (Corner c = surface.first_corner(surface.record(corner).tail);; c = surface.turn_left(c)) {
-    if (c.half == corner) return turned + (c.forward ? within : width - within);
+    if (c.half == corner) return {turned + (c.forward ? within : width - within), c.forward};
     turned += surface.angle(c.half);
   }
 }
@@ -178,7 +178,7 @@ class PathCollector {
     const Arrival& in = map_.arrival(Vertex{vertex});
     if (in.half >= 0) {
       const Half corner = previous(in.half);
-      path_.end_direction = angle_at_vertex(surface_, corner, in_previous(surface_.record(in.half), in.from)) *
+      path_.end_direction = angle_at_vertex(surface_, corner, in_previous(surface_.record(in.half), in.from)).angle *
                             surface_.angle_scale(vertex);
       back_from(vertex);
     }
@@ -367,7 +367,7 @@ class Tracer {
     const Index vertex = surface_.record(corner).tail;
     const Line seen = in_frame_of(surface_, line, corner);
     const double sum = surface_.angle_sum(vertex);
-    const double in = angle_at_vertex(surface_, corner, -seen.direction);
+    const double in = angle_at_vertex(surface_, corner, -seen.direction).angle;
     if (!surface_.on_boundary(vertex)) return in < sum / 2 ? in + sum / 2 : in - sum / 2;
     if (in + pi <= sum + boundary_margin) return std::min(in + pi, sum);
     if (in - pi >= -boundary_margin) return std::max(in - pi, 0.0);

@@ -52,6 +52,10 @@ double angle_in_face(const PolyhedralSurface& surface, const Line& line);
 
 /// The unscaled angle of the direction from a vertex to a place in one of its faces, from the right side of its first corner.
 /// @param corner   half-edge of the face that starts at the vertex; `towards` is in its frame
-double angle_at_vertex(const PolyhedralSurface& surface, Half corner, const Place& towards);
+struct VertexAngle {
+  double angle;
+  bool forward;  ///< whether the corner's face has the orientation of the vertex
+};
+VertexAngle angle_at_vertex(const PolyhedralSurface& surface, Half corner, const Place& towards);
 
 }  // namespace ahm::exact

@@ -66,7 +66,7 @@ void Propagation::place_targets(std::span<const MeshPoint> targets) {
 
 void Propagation::add_source(const MeshPoint& point) {
   const auto number = static_cast<Index>(origins_.size());
-  origins_.push_back({-1, number, 0, 0});
+  origins_.push_back({.source = number});
   sources_ = origins_.size();
   const auto origin2 = static_cast<std::uint32_t>(2 * number);
   const Half first = 3 * point.face;
@@ -95,7 +95,7 @@ void Propagation::add_source(const MeshPoint& point) {
 }
 
 void Propagation::add_vertex_source(std::uint32_t origin2, Index vertex) {
-  if (distance_[vertex] == infinity) ++reached_count_;
+  if (distance_[vertex] == infinity) touched_.push_back(vertex);
   distance_[vertex] = 0;
   ArrivalRecord& reached = reached_[vertex];
   reached = {-1, static_cast<Index>(origin2 / 2), {}, 0};
@@ -179,15 +179,16 @@ void Propagation::light_corner(const Ray& ray, double low, double high) {
 
 ArrivalRecord Propagation::reach(const Ray& ray, const Place& at) const {
   const auto origin = static_cast<Index>(ray.origin2 / 2);
-  if (ray.origin2 / 2 >= sources_) return {ray.half, origin, ray.from, origins_[origin].direction};
+  const bool mirrored = origins_[origin].mirrored != ((ray.origin2 & 1) != 0);
+  if (ray.origin2 / 2 >= sources_) return {ray.half, origin, ray.from, origins_[origin].direction, mirrored};
   const double angle = std::atan2(at[1] - ray.from[1], at[0] - ray.from[0]);
-  return {ray.half, origin, ray.from, ray.turn + (ray.origin2 & 1 ? -angle : angle)};
+  return {ray.half, origin, ray.from, ray.turn + (ray.origin2 & 1 ? -angle : angle), mirrored};
 }
 
 /// Sets the distance of a vertex if it is shorter.
 void Propagation::offer(Index vertex, double distance, const Ray& ray, const Place& at) {
   if (!(distance < distance_[vertex])) return;
-  if (distance_[vertex] == infinity) ++reached_count_;
+  if (distance_[vertex] == infinity) touched_.push_back(vertex);
   distance_[vertex] = distance;
   reached_[vertex] = reach(ray, at);
   if (distance <= horizon_ && surface_.bends_paths(vertex)) bends_.push(distance, {vertex, distance});
@@ -251,7 +252,7 @@ void Propagation::bend(const Bend& event) {
   const ArrivalRecord& in = reached_[v];
   const Origin from = origins_[in.origin];
   const auto origin2 = static_cast<std::uint32_t>(2 * origins_.size());
-  origins_.push_back({v, from.source, event.distance, in.direction});
+  origins_.push_back({v, from.source, event.distance, in.direction, in.mirrored});
   const Half corner = previous(in.half);
   const Place back = in_previous(surface_.record(in.half), in.from);
   const double angle = surface_.angle(corner), inwards = std::clamp(std::atan2(back[1], back[0]), 0.0, angle);
@@ -267,10 +268,11 @@ void Propagation::bend(const Bend& event) {
 /// right side of the corner.
 void Propagation::fill(Corner c, double turned, double high, std::uint32_t origin2) {
   constexpr double low = pi - wedge_margin;
+  const bool forward = c.forward;
   for (; c.half >= 0 && turned < high; c = surface_.turn_left(c)) {
     const double angle = surface_.angle(c.half);
     if (turned + angle > low) {
-      const Ray ray{c.half, {}, 0, origin2};
+      const Ray ray{c.half, {}, 0, origin2 + (c.forward != forward)};
       c.forward ? light_corner(ray, low - turned, high - turned)
                 : light_corner(ray, angle + turned - high, angle + turned - low);
     }
@@ -405,6 +407,53 @@ void Propagation::check_count() const {
   if (static_cast<double>(window_count_) > max_windows(surface_.face_count()))
     throw InvalidGeometry("windows_without_end", "windows without end: lengths of sides differ too much",
                           "repair the mesh, or use the heat method");
+}
+
+/// Calls visit(corner) for the corners around a vertex.
+template <class Visit>
+void Propagation::for_each_corner(Index vertex, const Visit& visit) const {
+  const Corner first = surface_.first_corner(vertex);
+  Corner c = first;
+  do {
+    visit(c);
+    c = surface_.turn_left(c);
+  } while (c.half >= 0 && c != first);
+}
+
+void Propagation::check_reached() const {
+  for (const Index from : touched_) {
+    const auto check = [&](Index to, double length) {
+      const double way = (distance_[from] + length) * (1 + 1e-9);
+      if (!(way < horizon_) || distance_[to] <= way) return;
+      throw InvalidGeometry(
+          "windows_lost",
+          "windows were lost before they reached vertex " + std::to_string(to) + ", a neighbor of vertex " +
+              std::to_string(from),
+          "repair the needle triangles there, or use the polar or the heat method (paths: locally_shortest_path)");
+    };
+    if (!(distance_[from] < horizon_)) continue;
+    for_each_corner(from, [&](Corner c) {
+      const HalfRecord& r = surface_.record(c.half);
+      check(r.head, r.length);
+      check(r.apex, r.left);
+    });
+  }
+}
+
+void Propagation::clear(const ExactOptions& options) {
+  for (const Index vertex : touched_) {
+    distance_[vertex] = infinity;
+    // The half-edges whose apex is the vertex.
+    for_each_corner(vertex, [&](Corner c) { apex_arrivals_[next(c.half)].distance = infinity; });
+  }
+  touched_.clear();
+  origins_.clear();
+  sources_ = 0;
+  window_count_ = 0;
+  horizon_ = options.radius;
+  max_windows_ = options.max_windows;
+  windows_.clear(bucket_width * surface_.mean_length());
+  bends_.clear(bucket_width * surface_.mean_length());
 }
 
 PropagationResult Propagation::found() && {

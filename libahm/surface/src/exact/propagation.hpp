@@ -61,6 +61,22 @@ class BucketQueue {
 
   explicit BucketQueue(double width) : inverse_width_(1 / width), first_(ring, none) {}
 
+  /// Removes all items and begins at the first bucket. Keeps the memory.
+  void clear(double width) {
+    for (std::uint32_t& head : first_) {
+      if (size_ == 0) break;
+      while (head != none) {
+        const std::uint32_t taken = head;
+        head = chunks_[taken]->next;
+        size_ -= chunks_[taken]->count;
+        chunks_[taken]->next = free_;
+        free_ = taken;
+      }
+    }
+    inverse_width_ = 1 / width;
+    bucket_ = 0;
+  }
+
   void push(double key, const Item& item) {
     std::uint32_t& head = first_[slot(key)];
     if (head == none || chunks_[head]->count == per_chunk) {
@@ -198,7 +214,8 @@ struct ArrivalRecord {
   Half half = -1;  ///< as in `Arrival`
   Index origin = -1;
   Place from{};
-  double direction = 0;  ///< direction at the source, as an unscaled angle
+  double direction = 0;   ///< direction at the source, as an unscaled angle
+  bool mirrored = false;  ///< whether the frame of the half-edge is a mirror image of the source's
 };
 
 /// Results of a propagation.
@@ -210,7 +227,8 @@ struct PropagationResult {
   ExactStatistics statistics;
 };
 
-/// Propagation from a set of sources. Call `add_source` for all sources, then `run`, then `found`.
+/// Propagation from a set of sources. Call `add_source` for all sources, then `run`, then `check_reached` and `found`. After `clear`
+/// the same memory serves another set of sources.
 class Propagation {
  public:
   Propagation(const PolyhedralSurface& surface, const ExactOptions& options, std::span<const MeshPoint> targets);
@@ -218,9 +236,23 @@ class Propagation {
   void add_source(const MeshPoint& point);
   /// @throws Cancelled, InvalidGeometry (fault windows_without_end)
   void run(const Progress& progress);
+  /// Checks that no vertex is farther than a neighbor plus the side between them. Otherwise windows were lost, which happens in
+  /// needles with angles near the rounding error. @throws InvalidGeometry (fault windows_lost)
+  void check_reached() const;
+
+  /// Distances up to this are final: those of `touched` within it are the results.
+  double horizon() const { return horizon_; }
+  /// The vertices with a distance, in the order in which they were reached.
+  std::span<const Index> touched() const { return touched_; }
+  double distance_of(Index vertex) const { return distance_[vertex]; }
+  const ArrivalRecord& arrival_of(Index vertex) const { return reached_[vertex]; }
+  const Origin& origin(Index number) const { return origins_[number]; }
 
   /// Returns the results and ends the propagation.
   PropagationResult found() &&;
+  /// Removes the sources and results. The time depends on the number of vertices reached. Without targets only.
+  /// @param options  radius and max_windows are used
+  void clear(const ExactOptions& options);
 
  private:
   static constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -280,7 +312,9 @@ class Propagation {
   /// Checks the number of windows.
   /// @throws InvalidGeometry where windows run in circles
   void check_count() const;
-  double fraction() const { return reached_count_ / static_cast<double>(distance_.size()); }
+  double fraction() const { return static_cast<double>(touched_.size()) / static_cast<double>(distance_.size()); }
+  template <class Visit>
+  void for_each_corner(Index vertex, const Visit& visit) const;
   std::size_t bytes() const;  ///< memory in use
 
   const PolyhedralSurface& surface_;
@@ -295,7 +329,7 @@ class Propagation {
   std::vector<Index> target_vertex_;     ///< vertex of each target; -1: none
   std::vector<Index> target_order_;      ///< numbers of the targets, sorted by face
   std::vector<Offset> targets_of_face_;  ///< first entry of each face in `target_order_`, faces + 1; empty: no targets
-  Index reached_count_ = 0;              ///< number of vertices with a distance
+  std::vector<Index> touched_;           ///< vertices with a distance
   Offset window_count_ = 0;
   std::vector<ApexArrival> apex_arrivals_;   ///< best window of each half-edge
   std::vector<Place> apex_arrival_origins_;  ///< origin of that window; empty: not needed

@@ -382,7 +382,7 @@ bool flip_bends(const PolyhedralSurface& surface, Strip& strip, const TautLine& 
 double direction_at(const PolyhedralSurface& surface, const CurveEnd& end, const Place& towards) {
   if (end.corner >= 0) {
     const Index vertex = surface.record(end.corner).tail;
-    return angle_at_vertex(surface, end.corner, from_first_side(surface, end.corner, towards)) *
+    return angle_at_vertex(surface, end.corner, from_first_side(surface, end.corner, towards)).angle *
            surface.angle_scale(vertex);
   }
   const Vec2 way = towards - surface.place(end.point);

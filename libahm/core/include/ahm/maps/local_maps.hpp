@@ -1,5 +1,5 @@
 /// \file
-/// Log maps of many sources, each computed on a small part of the graph.
+/// Log maps of many sources, each computed on a small part of the graph. For surfaces use `row_local_maps`.
 ///
 /// \code
 /// // The charts of an atlas: for each source the vertices of its own cell.
@@ -7,6 +7,8 @@
 /// \endcode
 #pragma once
 
+#include <functional>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -15,6 +17,7 @@
 #include "ahm/heat/heat_options.hpp"
 #include "ahm/maps/log_map.hpp"
 #include "ahm/maps/source.hpp"
+#include "ahm/maps/wavefront.hpp"
 
 namespace ahm {
 
@@ -36,13 +39,17 @@ struct LocalMapOptions {
   /// The number of nearest neighbors to keep, including the source's own vertex; 0: all within the radius. The result has fewer if the
   /// radius or the component contains fewer.
   Index k = 0;
-  /// How far each patch extends beyond the radius, in units of sqrt(tau). Flat patches are exact at any margin. Other patches differ from
+  /// heat, or polar (`PolarMapSolver::local_maps`, `row_local_maps`). None: the method of the solver, or the one suggested for the
+  /// surface; heat for graphs.
+  std::optional<Method> method = {};
+  /// Heat: how far each patch extends beyond the radius, in units of sqrt(tau). Flat patches are exact at any margin. Other patches differ from
   /// the map of the whole graph by about 1e-5 of the radius at 2, ten times less at 3, and so on (docs/results/local_maps.md).
   double margin = 2;
   /// Increase distances that are shorter than the straight line in space to its length, as in results by row. The radius and `k`
   /// apply to the increased distances. Ignored if the graph has no frames.
   bool bound_by_straight_line = false;
-  DiffusionOptions heat = {};  ///< the mean edge length h is measured on the whole graph
+  /// Polar maps use `threads` and `progress` only. Heat: the mean edge length h is measured on the whole graph.
+  DiffusionOptions heat = {};
   std::size_t memory = 0;      ///< bytes available for the result; 0: the memory of the machine
 };
 
@@ -78,13 +85,25 @@ struct LocalMapsOf {
 
 using LocalMaps = LocalMapsOf<Vertex>;
 
-/// Local maps of these sources. Nearby sources share one small factorization. Time and memory depend on the patches, not on the size of
-/// the graph.
-/// @throws InvalidArgument (options, source), InvalidGraph, NotPositiveDefinite (of a patch), ResourceExhausted, Cancelled
+/// Local maps of these sources by the heat method. Nearby sources share one small factorization. Time and memory depend on the patches,
+/// not on the size of the graph.
+/// @throws InvalidArgument (options, source; another method), InvalidGraph, NotPositiveDefinite (of a patch), ResourceExhausted, Cancelled
 LocalMaps local_maps(const TangentGraph& graph, std::span<const Source> sources, const LocalMapOptions& options);
 /// Local maps of these vertices.
 LocalMaps local_maps(const TangentGraph& graph, std::span<const Vertex> vertices, const LocalMapOptions& options);
 /// Local maps of every vertex.
 LocalMaps local_maps(const TangentGraph& graph, const LocalMapOptions& options);
+
+/// Returns a front with directions whose results around source s are final up to a radius, world units. The front is valid until the
+/// next call.
+using LocalFront = std::function<const Wavefront&(std::size_t s, double radius)>;
+
+/// Local maps in geodesic polar coordinates, d = 2: each source has a small front. Nothing is factored. Time and memory depend on the
+/// number of entries, not on the size of the graph.
+/// @param sources     the sources of the fronts; no curves
+/// @param make_front  makes the fronts of one thread
+/// @throws InvalidArgument (options, source, dimension), ResourceExhausted, Cancelled
+LocalMaps local_polar_maps(const TangentGraph& graph, std::span<const Source> sources, const LocalMapOptions& options,
+                           const std::function<LocalFront()>& make_front);
 
 }  // namespace ahm

@@ -72,18 +72,23 @@ class Wavefront {
   Index points() const noexcept;
   const TangentGraph& graph() const noexcept;
 
+  /// Removes all points and results, for another front over the same graph. The time depends on the number of vertices that the
+  /// front has reached, not on the size of the graph.
+  void clear();
+
   /// Exact polar coordinates of one vertex, for example from exact windows around the source.
   struct Seed {
     Vertex vertex;
     double distance;   ///< world units
     Vec2 direction;    ///< as `Wavefront::direction`
     Vec2 arrival;      ///< as `Wavefront::arrival`; NaN: unknown
-    Index point = 0;   ///< number of the source point
-    double error = 0;  ///< expected error of the direction, radians
+    Index point = 0;        ///< number of the source point
+    double error = 0;       ///< expected error of the direction, radians
+    bool mirrored = false;  ///< as `Wavefront::is_mirrored`
   };
   /// Discards all results and starts again from the seeds. The front does not change the values of seeds. Each seed reuses the curvature of
-  /// the front at its vertex from the discarded results, if there is one, so run the front over the seeds first. Neighbors of a point that
-  /// are no seeds keep their results. Requires directions.
+  /// the front at its vertex from the discarded results, if there is one, so if the front is to continue beyond the seeds, run it over
+  /// them first. Neighbors of a point that are no seeds keep their results. Requires directions.
   void restart(std::span<const Seed> seeds);
 
   /// Advances the front until all vertices nearer than `radius` (world units) have their final distance. Vertices beyond may have no
@@ -92,6 +97,9 @@ class Wavefront {
   void run(double radius = std::numeric_limits<double>::infinity(), const std::stop_token& stop = {});
   /// All distances below this one are final, world units; infinity if the front has visited all vertices it can reach.
   double next() const;
+
+  /// The vertices with a distance, in the order in which the front first reached them.
+  std::vector<Vertex> reached() const;
 
   /// Distance to the nearest point, world units; infinity at vertices that the front has not reached.
   double distance(Vertex vertex) const;

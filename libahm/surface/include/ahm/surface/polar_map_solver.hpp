@@ -6,13 +6,17 @@
 /// const ahm::PolarMapSolver solver(surface);                 // a mesh, a cloud, a grid: nothing is factored
 /// ahm::LogMap map = solver.log_map(ahm::Row{42});
 /// ahm::RowLogMap rows = surface.to_rows(map);                // the same as for heat maps
+/// ahm::LocalMaps near = solver.local_maps(sources, {.k = 12});   // the twelve nearest vertices of many sources
 /// \endcode
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 
 #include "ahm/graph/csr_graph.hpp"
+#include "ahm/maps/local_maps.hpp"
 #include "ahm/maps/polar_map.hpp"
 #include "ahm/surface/exact/exact_geodesics.hpp"
 #include "ahm/surface/surface.hpp"
@@ -46,6 +50,8 @@ class PolarMapSolver {
   explicit PolarMapSolver(const TangentGraph&&, const PolarSolverOptions& = {}) = delete;
 
   const TangentGraph& graph() const noexcept { return *graph_; }
+  /// Null for a graph without a surface.
+  const Surface* surface() const noexcept { return surface_; }
 
   /// The map from a point of the surface.
   /// @param u_axis  as in `Surface::source`
@@ -58,9 +64,27 @@ class PolarMapSolver {
   /// one (`LogMap::nearest`). @throws as `log_map` of a point
   LogMap log_map(const Source& source, const PolarMapOptions& options = {}) const;
 
+  /// Local maps of vertices, in the axes of their frames. They contain the same numbers as `log_map` with the radius of the options.
+  /// Each thread needs about 200 bytes per vertex of the graph for its fronts; otherwise time and memory depend on the number of
+  /// entries.
+  /// @param options  all but `margin` and the options of heat; of `heat` only `threads` and `progress`
+  /// @throws InvalidArgument (options, another method, source), ResourceExhausted, Cancelled
+  LocalMaps local_maps(std::span<const Vertex> sources, const LocalMapOptions& options) const;
+  /// Local maps of points of the surface. @throws as `log_map`, `local_maps` of vertices
+  LocalMaps local_maps(std::span<const SurfacePoint> sources, const LocalMapOptions& options,
+                       const std::optional<Vec3>& u_axis = {}) const;
+  /// Local maps of sources of any form except curves, without windows. @throws as `local_maps` of vertices
+  LocalMaps local_maps(std::span<const Source> sources, const LocalMapOptions& options) const;
+
  private:
-  template <class Seeds>
-  LogMap seeded_map(const Source& source, const PolarMapOptions& options, const Seeds& seeds) const;
+  class Fronts;
+  /// Computes polar coordinates around a source by exact windows.
+  using Seeds = std::function<ExactGeodesics::Seeds(const ExactMapOptions&, ExactGeodesics::Workspace&)>;
+  Seeds seeds_of(Vertex source) const;
+  Seeds seeds_of(const SurfacePoint& source, const std::optional<Vec3>& u_axis) const;
+  LogMap log_map(const Source& source, const PolarMapOptions& options, const Seeds& seeds) const;
+  LocalMaps local_maps(std::span<const Source> sources, const LocalMapOptions& options,
+                       const std::function<Seeds(std::size_t)>& seeds) const;
 
   const TangentGraph* graph_;
   const Surface* surface_ = nullptr;

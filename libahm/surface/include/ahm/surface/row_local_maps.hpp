@@ -1,31 +1,49 @@
 /// \file
-/// Local maps whose neighbors are rows of the input.
+/// Local maps whose neighbors are rows of the input: the log map of the neighborhood of each row.
 ///
 /// \code
+/// const ahm::RowLocalMaps all = ahm::row_local_maps(surface, {.k = 12});        // the twelve nearest rows of every row
 /// const ahm::Vertex here = surface.vertex(ahm::Row{42});
 /// const ahm::RowLocalMaps maps = ahm::row_local_maps(surface, {&here, 1}, {.radius = 0.02});
 /// for (ahm::Row row : maps.neighbors) use(row);
 /// \endcode
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "ahm/maps/local_maps.hpp"
+#include "ahm/surface/polar_map_solver.hpp"
 #include "ahm/surface/surface.hpp"
 
 namespace ahm {
 
 using RowLocalMaps = LocalMapsOf<Row>;
 
-/// `local_maps` with rows as neighbors: each vertex is replaced by its first row. Vertices without a row, as inside refined
+/// Local maps with rows as neighbors: each vertex is replaced by its first row. Vertices without a row, as inside refined
 /// polygons, are omitted; `LocalMapOptions::k` counts the remaining ones. Distances are at least the straight-line
 /// distance, as in `RowLogMap`.
-/// @throws as `local_maps`
+///
+/// The method is that of the options. None: the one suggested for the surface (`Surface::suggested_method`). Polar maps are
+/// hundreds of times faster; heat is smoother on noisy clouds. These functions prepare the surface for polar maps in each call; with a
+/// `PolarMapSolver` this is done once.
+/// @throws InvalidArgument (the method exact); as `local_maps`, `PolarMapSolver::local_maps`
 RowLocalMaps row_local_maps(const Surface& surface, std::span<const Vertex> sources, const LocalMapOptions& options);
-/// Local maps of any sources: points in faces, curves.
-RowLocalMaps row_local_maps(const Surface& surface, std::span<const Source> sources, const LocalMapOptions& options);
-
+/// Local maps of points of the surface. @param u_axis  as in `Surface::source`
+RowLocalMaps row_local_maps(const Surface& surface, std::span<const SurfacePoint> sources,
+                            const LocalMapOptions& options, const std::optional<Vec3>& u_axis = {});
 /// Local maps of every row: source s is row s. Rows without a vertex have no entries.
 RowLocalMaps row_local_maps(const Surface& surface, const LocalMapOptions& options);
+/// Local maps of any sources, such as curves, by heat.
+RowLocalMaps row_local_maps(const Surface& surface, std::span<const Source> sources, const LocalMapOptions& options);
+
+/// Polar local maps.
+/// @param solver  of a surface
+/// @throws InvalidArgument (a solver of a graph; another method), as `PolarMapSolver::local_maps`
+RowLocalMaps row_local_maps(const PolarMapSolver& solver, std::span<const Vertex> sources,
+                            const LocalMapOptions& options);
+RowLocalMaps row_local_maps(const PolarMapSolver& solver, std::span<const SurfacePoint> sources,
+                            const LocalMapOptions& options, const std::optional<Vec3>& u_axis = {});
+RowLocalMaps row_local_maps(const PolarMapSolver& solver, const LocalMapOptions& options);
 
 }  // namespace ahm

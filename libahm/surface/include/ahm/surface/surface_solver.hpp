@@ -150,7 +150,8 @@ class SurfaceSolver {
   /// @throws as `path`
   SurfacePath trace(const Location& start, const Vec3& direction, double length) const;
 
-  /// The log maps of every row within a radius. Rows without a vertex have no entries.
+  /// The log maps of every row within a radius, by heat if that is the method of the solver or of the options, otherwise polar. Rows
+  /// without a vertex have no entries.
   /// @throws as `row_local_maps`
   RowLocalMaps local_maps(const LocalMapOptions& options) const;
   /// The log maps of some sources within a radius. @throws as `row_local_maps`

@@ -14,6 +14,7 @@
 
 #include <array>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -26,6 +27,11 @@
 #include "ahm/surface/surface.hpp"
 
 namespace ahm {
+
+namespace exact {
+class Propagation;
+struct ExactOptions;
+}  // namespace exact
 
 /// Options of exact maps and of everything that uses them.
 struct ExactMapOptions {
@@ -82,13 +88,32 @@ class ExactGeodesics {
   /// @throws InvalidArgument (no source), as `log_map` of a point
   LabelledLogMap log_map(std::span<const ExactSource> sources, const ExactMapOptions& options = {}) const;
 
+  /// Memory of `seeds`, for many calls on the same geodesics; one per thread. It takes 150 bytes per vertex.
+  class Workspace {
+   public:
+    explicit Workspace(const ExactGeodesics& geodesics);
+    ~Workspace();
+    Workspace(Workspace&&) noexcept;
+    Workspace& operator=(Workspace&&) noexcept;
+
+   private:
+    friend class ExactGeodesics;
+    std::unique_ptr<exact::Propagation> windows_;
+  };
+  /// Polar coordinates of the vertices around a source.
+  struct Seeds {
+    std::vector<Wavefront::Seed> vertices;
+    /// The vertices contain all connected ones up to this distance, world units: the radius, or less if the windows were not
+    /// enough.
+    double horizon = 0;
+  };
   /// The polar coordinates of `log_map`, for the vertices that windows reach within the options. A front can continue from
-  /// them.
-  /// @param options  frames: whether arrival directions are computed, too
+  /// them. Without the time to make a workspace, the time depends on the number of windows, not on the size of the surface.
+  /// @param options  frames: whether arrival directions and orientations are computed, too
   /// @throws as `log_map` of a point
-  std::vector<Wavefront::Seed> seeds(const SurfacePoint& source, const std::optional<Vec3>& u_axis = {},
-                                     const ExactMapOptions& options = {}) const;
-  std::vector<Wavefront::Seed> seeds(Vertex source, const ExactMapOptions& options = {}) const;
+  Seeds seeds(const SurfacePoint& source, const std::optional<Vec3>& u_axis, const ExactMapOptions& options,
+              Workspace& workspace) const;
+  Seeds seeds(Vertex source, const ExactMapOptions& options, Workspace& workspace) const;
 
   /// The shortest path through points in their order. Its length is in world units; `position` converts its points to space.
   /// @throws InvalidArgument (fewer than two points; as `Surface::source`)
@@ -123,7 +148,8 @@ class ExactGeodesics {
   static PlacedSources at_vertex(const FlatTriangles& flat, Vertex source);
   exact::ExactMap exact_map(const PlacedSources& from, const ExactMapOptions& options) const;
   LabelledLogMap log_map(const PlacedSources& from, Source source, const ExactMapOptions& options) const;
-  std::vector<Wavefront::Seed> seeds(const PlacedSources& from, const ExactMapOptions& options) const;
+  Seeds seeds(const PlacedSources& from, const ExactMapOptions& options, Workspace& workspace) const;
+  exact::ExactOptions window_options(const ExactMapOptions& options) const;
   PlacedSources placed(std::span<const ExactSource> sources) const;
   static Source joined(std::span<const ExactSource> given, const PlacedSources& placed);
   std::vector<double> jumps(std::span<const double> coordinates, std::span<const Index> labels, bool of_curve) const;

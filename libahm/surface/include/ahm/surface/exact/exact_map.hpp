@@ -47,6 +47,8 @@ struct Origin {
   Index source = 0;      ///< number of the source that its paths come from
   double distance = 0;   ///< distance from that source
   double direction = 0;  ///< direction at that source, as in `ExactMap::direction`; 0 for a source itself
+  /// Whether the face in which paths arrive at the vertex has the opposite orientation of the source's directions.
+  bool mirrored = false;
 };
 
 /// Statistics of the propagation.

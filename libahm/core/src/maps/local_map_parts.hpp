@@ -1,0 +1,43 @@
+/// \file
+/// Parts of local maps that all methods share: checks of the options, radii, memory, and the assembly of the result.
+#pragma once
+
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "ahm/graph/tangent_graph.hpp"
+#include "ahm/maps/local_maps.hpp"
+#include "ahm/maps/source.hpp"
+#include "maps/patch_maps.hpp"
+
+namespace ahm {
+
+/// Checks radius and k. @throws InvalidArgument
+void check_extent(const LocalMapOptions& options);
+
+/// An upper bound of the distance of the k nearest vertices, world units: the length of the edge path to the k-th vertex on edge paths.
+struct NearestRadius {
+  double radius;
+  bool is_complete;  ///< the component has fewer than k vertices, all within the radius
+};
+/// @param ball  workspace for `graph`
+NearestRadius radius_of_nearest(const TangentGraph& graph, Ball& ball, const Source& source, Index k);
+
+/// Checks the memory for the result. Estimates the median number of vertices within the radius from a sample of the sources.
+/// @param radius  radius(s): radius of source s, world units
+/// @throws ResourceExhausted
+void check_memory(const TangentGraph& graph, std::span<const Source> sources,
+                  const std::function<double(std::size_t)>& radius, const LocalMapOptions& options);
+
+/// The entries of one or several sources, in their order.
+struct LocalEntries {
+  std::vector<Vertex> vertices;
+  std::vector<double> logs, distances, transports;
+};
+
+/// Concatenates all entries. Frees them one by one, so that the peak memory is little more than the result.
+LocalMaps joined(const TangentGraph& graph, std::vector<Offset> indptr, std::vector<LocalEntries>& entries,
+                 unsigned threads);
+
+}  // namespace ahm
