@@ -93,6 +93,34 @@ TEST_F(Coverage, AndInverseMapAreTheSameOnTheSurroundings) {
   }
 }
 
+using Isolines = InFolder;
+
+TEST_F(Isolines, OfAColumnAndOfTheDistanceAreCirclesOnASphere) {
+  write("sphere.xyz", xyz(sphere(3000)));
+  run_ok("logmap sphere.xyz -s 0 -o map.ply");
+  const double h = 0.07;  // spacing of the points
+  for (const std::string function : {"map.ply --column distance", "sphere.xyz --source 0"}) {
+    const auto json = summary("isolines " + function + " --levels 0.5,1 -o lines.csv");
+    expect_values(json, {{"/lines", 2}, {"/closed", 2}});
+    for (const Row& p : read_csv("lines.csv")) {
+      EXPECT_EQ(p["level"], p["curve"] == 0 ? 0.5 : 1);
+      EXPECT_NEAR(std::acos(std::min(1.0, p["z"])), p["level"], h);
+    }
+  }
+  run_ok("isolines sphere.xyz --column z --every 0.25 -o lines.obj");
+  EXPECT_EQ(obj_lines("lines.obj", "l").size(), 7U);
+}
+
+TEST_F(Isolines, RefusesWhatHasNoLines) {
+  write("sphere.xyz", xyz(sphere(500)));
+  expect_refused("isolines sphere.xyz -o lines.csv",
+                 {{"--column w --every 1", 1, {"--column w", "no such column", "x, y, z"}},
+                  {"--column z --levels 7", 1, {"no triangle contains a level"}},
+                  {"--column z --source 3 --every 1", 2, {"--source"}},
+                  {"--column z", 2, {"--levels or --every"}},
+                  {"--every 1", 2, {"--column or --source"}}});
+}
+
 using Inverse = InFolder;
 
 TEST_F(Inverse, FindsThePointsOfAPlane) {

@@ -10,6 +10,7 @@
 #include "ahm/applications/decal.hpp"
 #include "ahm/applications/distortion.hpp"
 #include "ahm/applications/inverse_map.hpp"
+#include "ahm/applications/isolines.hpp"
 #include "ahm/applications/mean.hpp"
 #include "ahm/applications/stroke.hpp"
 #include "ahm/cholesky/cholesky.hpp"
