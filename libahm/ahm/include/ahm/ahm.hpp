@@ -13,6 +13,7 @@
 #include "ahm/applications/isolines.hpp"
 #include "ahm/applications/mean.hpp"
 #include "ahm/applications/stroke.hpp"
+#include "ahm/applications/tool_path.hpp"
 #include "ahm/cholesky/cholesky.hpp"
 #include "ahm/cholesky/conjugate_gradient.hpp"
 #include "ahm/error.hpp"
