@@ -5,7 +5,7 @@
 #include <numbers>
 #include <set>
 
-#include "ahm/conformance/triangle_meshes.hpp"
+#include "ahm/conformance/parts.hpp"
 #include "ahm/pointcloud/point_cloud_surface.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "ahm/util/vec.hpp"
@@ -13,57 +13,6 @@
 
 namespace ahm::test {
 namespace {
-
-/// The triangles of a box of these sizes, two per side.
-Mesh box(const Vec3& size) {
-  Mesh mesh;
-  for (const double x : {0.0, size[0]})
-    for (const double y : {0.0, size[1]})
-      for (const double z : {0.0, size[2]}) mesh.positions.push_back({x, y, z});
-  mesh.faces = {{0, 1, 3}, {0, 3, 2}, {4, 6, 7}, {4, 7, 5}, {0, 4, 5}, {0, 5, 1},
-                {2, 3, 7}, {2, 7, 6}, {0, 2, 6}, {0, 6, 4}, {1, 5, 7}, {1, 7, 3}};
-  return mesh;
-}
-
-/// A prism over a polygon of 48 sides, of radius 1, with needles along the axis.
-Mesh cylinder(double height, bool closed) {
-  constexpr Index n = 48;
-  Mesh mesh;
-  for (const double z : {0.0, height})
-    for (Index i = 0; i < n; ++i)
-      mesh.positions.push_back({std::cos(2 * std::numbers::pi * i / n), std::sin(2 * std::numbers::pi * i / n), z});
-  for (Index i = 0; i < n; ++i) {
-    const Index j = (i + 1) % n;
-    mesh.faces.push_back({i, j, n + j});
-    mesh.faces.push_back({i, n + j, n + i});
-    if (!closed) continue;
-    mesh.faces.push_back({2 * n, j, i});
-    mesh.faces.push_back({2 * n + 1, n + i, n + j});
-  }
-  if (closed) mesh.positions.push_back({0, 0, 0}), mesh.positions.push_back({0, 0, height});
-  return mesh;
-}
-
-/// A plate of 6 x 4 with three holes cut out of a grid.
-Mesh plate_with_holes() {
-  constexpr Index nx = 61, ny = 41;
-  constexpr double h = 0.1;
-  Mesh mesh;
-  for (Index j = 0; j < ny; ++j)
-    for (Index i = 0; i < nx; ++i) mesh.positions.push_back({h * i, h * j, 0});
-  const auto is_hole = [](double x, double y) {
-    return std::hypot(x - 1.5, y - 2) < 0.6 || std::hypot(x - 4.2, y - 1.4) < 0.75 ||
-           std::hypot(x - 4.4, y - 3.2) < 0.3;
-  };
-  for (Index j = 0; j + 1 < ny; ++j)
-    for (Index i = 0; i + 1 < nx; ++i) {
-      if (is_hole(h * (i + 0.5), h * (j + 0.5))) continue;
-      const Index a = j * nx + i;
-      mesh.faces.push_back({a, a + 1, a + nx + 1});
-      mesh.faces.push_back({a, a + nx + 1, a + nx});
-    }
-  return mesh;
-}
 
 /// Two boxes that do not touch.
 Mesh two_boxes() { return joined(box({4, 3, 1}), box({1, 1, 1}), {6, 1, 0}); }
@@ -135,8 +84,8 @@ TEST(ToolPath, CoversAnOpenCylinder) { expect_path(cylinder(3, false), 0.3); }
 TEST(ToolPath, CoversAClosedCylinder) { expect_path(cylinder(3, true), 0.3); }
 TEST(ToolPath, CoversABox) { expect_path(box({4, 3, 2}), 0.3); }
 TEST(ToolPath, CoversATorus) { expect_path(torus(1000), 0.2); }
-TEST(ToolPath, CoversAPlateWithHoles) { expect_path(plate_with_holes(), 0.25); }
-TEST(ToolPath, CoversAPlateFromItsBoundary) { expect_path(plate_with_holes(), 0.25, BoundarySeed{}); }
+TEST(ToolPath, CoversAPlateWithHoles) { expect_path(holed_plate(), 0.25); }
+TEST(ToolPath, CoversAPlateFromItsBoundary) { expect_path(holed_plate(), 0.25, BoundarySeed{}); }
 TEST(ToolPath, CoversSeveralComponents) { expect_path(two_boxes(), 0.25); }
 TEST(ToolPath, CoversABoxFromASectionWithAPlane) { expect_path(box({4, 3, 2}), 0.3, PlaneSeed{{1, 1, 1}, {1, 2, 3}}); }
 
@@ -173,7 +122,7 @@ TEST(ToolPath, OneWayPassesRunInOneDirection) {
 }
 
 TEST(ToolPath, IsParallelToADrawnCurveAndToALine) {
-  const Mesh mesh = plate_with_holes();
+  const Mesh mesh = holed_plate();
   const auto surface = surface_of(mesh);
   for (const ToolPathSeed& seed :
        {ToolPathSeed{CurveSeed{{{0, 0.5, 0}, {6, 0.5, 0}}, false}}, ToolPathSeed{LineSeed{Row{335}, {1, 0, 0}}}}) {
@@ -200,7 +149,7 @@ TEST(ToolPath, CoversARegionOnly) {
   for (const ToolPose& pose : path.poses)
     if (pose.kind == ToolMotion::pass) EXPECT_NEAR(pose.position[2], 2, 1e-9);
 
-  const Mesh plate = plate_with_holes();
+  const Mesh plate = holed_plate();
   const auto flat = surface_of(plate);
   const ToolPathRegion disc{.disc = ToolPathRegion::Disc{Row{20 * 61 + 30}, 0.9}};
   for (const ToolPose& pose : tool_path(flat, {.spacing = 0.2, .region = disc}).poses)

@@ -76,7 +76,7 @@ constexpr const char* coverage_footer =
     "  ahm coverage scan.ply --source 0.1,0.2,1.4 --radius 0.2 --spacing 0.01 -o path.csv\n"
     "  ahm coverage part.stl --source 17 --radius 30 --spacing 2 --pattern spiral -o path.ply\n"
     "  ahm coverage part.obj --whole --spacing 2 -o path.csv\n"
-    "  ahm coverage part.obj --whole --spacing 2 --facing 0,0,1 --max-angle 60 --one-way -o path.vtp --json path.json";
+    "  ahm coverage part.obj --whole --spacing 2 --facing 0,0,1 --max-angle 60 -o path.vtp --json path.json";
 
 struct CoverageCommandOptions {
   InputOptions input;

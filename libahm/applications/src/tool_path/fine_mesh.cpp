@@ -133,7 +133,7 @@ exact::PolyhedralSurface polyhedral(const FaceMesh& mesh) {
 }
 
 std::array<double, 3> nearest_in_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
-  // Regions of corners, sides and the interior [Eri05].
+  // The regions that are nearest to the corners, to the sides, and to the interior.
   const Vec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
   const double d1 = dot(ab, ap), d2 = dot(ac, ap), d3 = dot(ab, bp), d4 = dot(ac, bp), d5 = dot(ab, cp),
                d6 = dot(ac, cp);

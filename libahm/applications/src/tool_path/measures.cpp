@@ -16,7 +16,7 @@ constexpr double covered_within = 0.6, double_within = 0.5;
 /// Gaps are measured up to this distance, in spacings.
 constexpr double farthest = 4;
 
-/// Points that are spread over a face in proportion to its area: those of a sequence of low discrepancy [R2].
+/// Points that are spread over a face in proportion to its area: an additive sequence of low discrepancy.
 class AreaSamples {
  public:
   explicit AreaSamples(double per_area) : per_area_(per_area) {}

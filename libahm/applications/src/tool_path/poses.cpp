@@ -341,7 +341,7 @@ class PoseWriter {
     return normalized(any - dot(any, axis) * axis);
   }
 
-  /// The rotation with these x and z axes, as a quaternion (w, x, y, z) [She78].
+  /// The rotation with these x and z axes, as a quaternion (w, x, y, z).
   static std::array<double, 4> rotation(const Vec3& x, const Vec3& z) {
     const Vec3 y = cross(z, x);
     const double trace = x[0] + y[1] + z[2];
