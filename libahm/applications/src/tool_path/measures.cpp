@@ -37,7 +37,8 @@ class AreaSamples {
 
 /// A point of a pass.
 struct PassPoint {
-  Vec3 position, axis;
+  Vec3 position;  ///< in spacings
+  Vec3 normal;    ///< of the nearest face, of any length; zero where there is none
   Index pass;
   double arclength, pass_length;
   bool closed;
@@ -55,8 +56,12 @@ std::vector<PassPoint> points_of_passes(const ToolPath& path, double step) {
       const auto parts = std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil(length / step)));
       for (std::size_t j = 0; j < parts; ++j) {
         const double t = (static_cast<double>(j) + 0.5) / static_cast<double>(parts);
-        result.push_back({(1 / path.spacing) * ((1 - t) * a.position + t * b.position), a.axis, static_cast<Index>(p),
-                          walked + t * length, pass.length / path.spacing, pass.closed});
+        result.push_back({(1 / path.spacing) * ((1 - t) * a.position + t * b.position),
+                          {},
+                          static_cast<Index>(p),
+                          walked + t * length,
+                          pass.length / path.spacing,
+                          pass.closed});
       }
       walked += length;
     }
@@ -66,7 +71,7 @@ std::vector<PassPoint> points_of_passes(const ToolPath& path, double step) {
 
 /// Whether two points belong to different parts of the passes, on the same side of a wall.
 bool are_two_passes(const PassPoint& a, const PassPoint& b) {
-  if (dot(a.axis, b.axis) <= 0) return false;
+  if (dot(a.normal, b.normal) <= 0) return false;
   if (a.pass != b.pass) return true;
   double along = std::abs(a.arclength - b.arclength);
   if (a.closed) along = std::min(along, a.pass_length - along);
@@ -118,10 +123,13 @@ ToolPathMeasures tool_path_measures(const Surface& surface, const ToolPath& path
   for (std::size_t f = 0; f < domain.mesh.size(); ++f)
     spread.in_face(static_cast<Index>(f), domain.mesh.area(static_cast<Index>(f)),
                    [&](const MeshPoint& point) { options.targets.push_back(point); });
-  const std::vector<PassPoint> points = points_of_passes(path, step);
+  std::vector<PassPoint> points = points_of_passes(path, step);
   std::vector<MeshPoint> sources;
-  for (const PassPoint& point : points)
-    if (const auto on_mesh = domain.locator.nearest(point.position)) sources.push_back(*on_mesh);
+  for (PassPoint& point : points)
+    if (const auto on_mesh = domain.locator.nearest(point.position)) {
+      sources.push_back(*on_mesh);
+      point.normal = domain.mesh.area_normal(on_mesh->face);
+    }
   result.area *= path.spacing * path.spacing;
   if (sources.empty()) {
     result.largest_gap = farthest;
