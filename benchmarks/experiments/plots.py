@@ -187,6 +187,15 @@ def costs(rows):
     return legend(figure, axes)
 
 
+def toolpaths(rows):
+    figure, axes = panels(2, width=4.4)
+    for axis, column in zip(axes, ("double", "seconds")):
+        pairs = numbers(rows, "faces", column)
+        axis.plot(*zip(*pairs), "o")
+        axis.set(xlabel="faces", ylabel=column, xscale="log")
+    return figure
+
+
 def variants(rows):
     figure, axes = panels(2, width=4.4)
     lines(axes[0], rows, "distance / longest", "median difference", "shape", logy=True, title="all vertices")

@@ -34,6 +34,7 @@ Table smooth_surfaces(const Settings&);
 Table stages_of_a_map(const Settings&);
 Table tessellations(const Settings&);
 Table times(const Settings&);
+Table toolpaths(const Settings&);
 Table trust(const Settings&);
 Table variants(const Settings&);
 
@@ -85,6 +86,7 @@ std::span<const Experiment> experiments() {
           trust},
       Experiment{"applications", "Fig. 18", "Decals, atlases, tool paths and means by each method",
                  "Applications by the affine heat method; the paper gives pictures, no numbers.", applications},
+      Experiment{"toolpaths", "none", "Tool paths over whole parts", "Not in the paper.", toolpaths},
       Experiment{"clouds", "after Fig. 15", "Distances on clouds compared with exact ones of meshes",
                  "Point clouds work like meshes; the paper gives no distances.", clouds},
       Experiment{"exact", "none", "Exact maps, and maps by heat compared with them",

@@ -32,6 +32,7 @@ from ._solvers import ExactGeodesics, LogMapSolver, PolarMapSolver, log_map
 from ._surface_solver import SurfaceSolver
 from ._surfaces import ClosestPoints, Surface, TangentGraph
 from ._textures import Atlas, Coverage, Decal, atlas, coverage, decal, decal_coordinates
+from ._tool_paths import Isoline, ToolPass, ToolPath, isolines, tool_path
 
 _atexit.register(_core.end)
 for _result in [_value for _value in vars().values() if isinstance(_value, type) and issubclass(_value, tuple)]:
@@ -42,11 +43,13 @@ __version__ = "0.1.0"
 __all__ = [
     "Atlas", "Cancelled", "Cells", "Center", "ClosestPoints", "Coverage", "Curvature", "Decal", "DistanceField",
     "Error", "ExactGeodesics", "Graph", "Grid", "InvalidArgument", "InvalidGeometry", "InvalidGraph", "InverseMap",
-    "InversePoints", "IoError", "LocalMaps", "LocalStroke", "LogMap", "LogMapSolver", "MapSource",
+    "InversePoints", "IoError", "Isoline", "LocalMaps", "LocalStroke", "LogMap", "LogMapSolver", "MapSource",
     "NotPositiveDefinite", "Operators", "PaddedMaps", "Path", "PointCloud", "PolarMapSolver", "PolygonMesh",
-    "ResourceExhausted", "Status", "Stroke", "Surface", "SurfaceSolver", "TangentGraph", "TriangleMesh", "atlas", "cells",
+    "ResourceExhausted", "Status", "Stroke", "Surface", "SurfaceSolver", "TangentGraph", "ToolPass", "ToolPath",
+    "TriangleMesh", "atlas", "cells",
     "coverage", "curvature", "decal",
     "decal_coordinates", "distance", "distance_and_gradient", "distance_and_nearest", "extend", "farthest_points",
-    "geodesic_loop", "geodesic_path", "geodesic_paths", "geometric_median", "karcher_mean", "local_maps",
-    "local_stroke", "log_map", "operators", "read", "shapes", "stroke", "surface", "trace", "transport",
+    "geodesic_loop", "geodesic_path", "geodesic_paths", "geometric_median", "isolines", "karcher_mean", "local_maps",
+    "local_stroke", "log_map", "operators", "read", "shapes", "stroke", "surface", "tool_path", "trace",
+    "transport",
 ]

@@ -19,4 +19,5 @@ PYBIND11_MODULE(_core, module) {
   ahm::python::add_geodesics(module);
   ahm::python::add_applications(module);
   ahm::python::add_textures(module);
+  ahm::python::add_tool_paths(module);
 }

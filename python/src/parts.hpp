@@ -18,6 +18,7 @@ void add_fields(py::module_& module);
 void add_geodesics(py::module_& module);
 void add_applications(py::module_& module);
 void add_textures(py::module_& module);
+void add_tool_paths(py::module_& module);
 
 /// A warning as a dictionary with the keys "id", "numbers", "rows", "name" and "text".
 py::dict warning(const Warning& warning);

@@ -220,6 +220,33 @@ def test_decals_keep_their_area_and_paint_rows(flat_surfaces):
     np.testing.assert_allclose(places[70], 0.5)
 
 
+def test_isolines_of_the_height_of_a_sphere_are_circles():
+    points, faces = ahm.shapes.sphere(4)
+    lines = ahm.isolines((points, faces), points[:, 2], every=0.4)
+    assert [line.level for line in lines] == pytest.approx([-0.8, -0.4, 0, 0.4, 0.8])
+    for line in lines:
+        assert line.closed and line.length == pytest.approx(2 * np.pi * np.sqrt(1 - line.level**2), rel=0.01)
+        assert np.allclose(line.points[:, 2], line.level)
+
+
+def test_a_tool_path_covers_a_box_and_its_top():
+    corners = np.array([[x, y, z] for x in (0, 4) for y in (0, 3) for z in (0, 2)], float)
+    faces = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
+    box = ahm.PolygonMesh(corners, faces)
+    path = ahm.tool_path(box, 0.3)
+    assert path.measures["area"] == pytest.approx(52)
+    assert path.measures["covered"] > 0.99 and path.measures["double_covered"] < 0.03
+    assert np.allclose(np.sum(path.axis * path.travel, axis=1), 0, atol=1e-9)
+    assert set(path.kind) <= {"pass", "link", "approach", "retreat"}
+    top = ahm.tool_path(box, 0.3, facing=[0, 0, 1], plane=([0, 1, 0], [0, 1, 0]), one_way=True)
+    on_passes = np.concatenate([np.arange(p.begin, p.end) for p in top.passes])
+    assert np.allclose(top.position[on_passes, 2], 2) and (np.abs(top.travel[on_passes, 0]) > 0.99).all()
+    assert top.measures["area"] == pytest.approx(12)
+    for arguments, message in (((5.1e3,), "larger than the region"), ((-1,), "spacing"), ((1, "top"), "seed")):
+        with pytest.raises(ValueError, match=message):
+            ahm.tool_path(box, arguments[0], **({"seed": arguments[1]} if len(arguments) > 1 else {}))
+
+
 def test_coverage_lines_are_equally_spaced_on_the_plane(flat_surfaces):
     m = ahm.log_map(flat_surfaces["triangles"], 70, u_axis=[1, 0, 0])
     for pattern in ("raster", "spiral"):

@@ -93,6 +93,70 @@ TEST_F(Coverage, AndInverseMapAreTheSameOnTheSurroundings) {
   }
 }
 
+// The whole sphere of points, and a disc of it: poses, kinds, and the report.
+TEST_F(Coverage, CoversAWholePart) {
+  write("sphere.xyz", xyz(sphere(3000)));
+  for (const std::string region : {"", " --source 0 --radius 1"}) {
+    const auto json = summary("coverage sphere.xyz --whole --spacing 0.2 -o path.csv" + region);
+    EXPECT_GT(number(json, "/covered"), 0.99);
+    EXPECT_LT(number(json, "/largest_gap"), 1.25);
+    EXPECT_LT(number(json, "/double_covered"), 0.03);
+    EXPECT_NEAR(number(json, "/area"), region.empty() ? 4 * pi : 2 * pi * (1 - std::cos(1)), 0.3);
+    const auto rows = read_csv("path.csv");
+    expect_values(json, {{"/points", rows.size()}, {"/links/missing", 0}});
+    std::size_t on_passes = 0;
+    for (const auto& pass : json.at("passes")) on_passes += pass.at("points").get<std::size_t>();
+    EXPECT_LT(on_passes, rows.size());
+    for (const Row& p : rows) {
+      EXPECT_LE(p["pass"], static_cast<double>(json.at("passes").size() - 1));
+      EXPECT_NEAR(std::hypot(p["nx"], p["ny"], p["nz"]), 1, 1e-9);
+      EXPECT_NEAR(std::hypot(std::hypot(p["qw"], p["qx"]), std::hypot(p["qy"], p["qz"])), 1, 1e-9);
+    }
+  }
+}
+
+TEST_F(Coverage, RefusesPartsItCannotCover) {
+  write("sphere.xyz", xyz(sphere(500)));
+  expect_refused("coverage sphere.xyz -o path.csv",
+                 {{"--whole --spacing 9", 1, {"the spacing, 9, is larger than the region"}},
+                  {"--whole --spacing 0.2 --seed-boundary", 1, {"no boundary"}},
+                  {"--whole --spacing 0.2 --seed-plane 0,0,4,0,0,1", 1, {"does not cross the region"}},
+                  {"--whole --spacing 0.2 --seed-plane 0,0,4", 2, {"six numbers"}},
+                  {"--whole --spacing 0.2 --seed-curve '0,0,1 0,0,3'", 1, {"point 1 of the seed curve"}},
+                  {"--whole --spacing 0.2 --mask m", 1, {"--mask m"}},
+                  {"--whole --spacing 0.2 --facing 0,0,1 --max-angle 0.001", 1, {"no triangle lies in the region"}},
+                  {"--spacing 0.2 --clearance 1", 2, {"--clearance requires --whole"}},
+                  {"--spacing 0.2", 2, {"--source is required"}}});
+}
+
+using Isolines = InFolder;
+
+TEST_F(Isolines, OfAColumnAndOfTheDistanceAreCirclesOnASphere) {
+  write("sphere.xyz", xyz(sphere(3000)));
+  run_ok("logmap sphere.xyz -s 0 -o map.ply");
+  const double h = 0.07;  // spacing of the points
+  for (const std::string function : {"map.ply --column distance", "sphere.xyz --source 0"}) {
+    const auto json = summary("isolines " + function + " --levels 0.5,1 -o lines.csv");
+    expect_values(json, {{"/lines", 2}, {"/closed", 2}});
+    for (const Row& p : read_csv("lines.csv")) {
+      EXPECT_EQ(p["level"], p["curve"] == 0 ? 0.5 : 1);
+      EXPECT_NEAR(std::acos(std::min(1.0, p["z"])), p["level"], h);
+    }
+  }
+  run_ok("isolines sphere.xyz --column z --every 0.25 -o lines.obj");
+  EXPECT_EQ(obj_lines("lines.obj", "l").size(), 7U);
+}
+
+TEST_F(Isolines, RefusesWhatHasNoLines) {
+  write("sphere.xyz", xyz(sphere(500)));
+  expect_refused("isolines sphere.xyz -o lines.csv",
+                 {{"--column w --every 1", 1, {"--column w", "no such column", "x, y, z"}},
+                  {"--column z --levels 7", 1, {"no triangle contains a level"}},
+                  {"--column z --source 3 --every 1", 2, {"--source"}},
+                  {"--column z", 2, {"--levels or --every"}},
+                  {"--every 1", 2, {"--column or --source"}}});
+}
+
 using Inverse = InFolder;
 
 TEST_F(Inverse, FindsThePointsOfAPlane) {

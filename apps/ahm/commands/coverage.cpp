@@ -13,6 +13,7 @@
 #include "cli/source_list.hpp"
 #include "commands/solve.hpp"
 #include "commands/subcommand.hpp"
+#include "commands/whole_coverage.hpp"
 #include "output/output_paths.hpp"
 #include "output/results.hpp"
 #include "output/summary.hpp"
@@ -46,6 +47,12 @@ void write_coverage(const std::string& file, const std::string& format, const Co
 namespace {
 
 constexpr const char* coverage_footer =
+    "Without --whole, the path is a pattern in the plane of one map around a point. With --whole, the passes have "
+    "equal\n"
+    "distance along the surface, from the section with a plane through the center along the longest direction, or "
+    "from\n"
+    "another seed. They are joined by links on the surface or above it.\n"
+    "\n"
     "SPEC is 123, x,y,z (the nearest vertex) or face:7:0.2,0.3,0.5 as in 'ahm logmap'.\n"
     "OUTPUT is .csv, .jsonl, or .ply and .vtp with edges between consecutive points; one row per point, in order\n"
     "along the path:\n"
@@ -59,10 +66,17 @@ constexpr const char* coverage_footer =
     "  arclength  length of the path from the start of the piece\n"
     "  spacing    distance in space to the next line\n"
     "  between    1: added where the path bends between faces; not a point of the pattern\n"
+    "With --whole, one row per pose: index, pass (number of the pass; on links that of the next one), kind (pass, "
+    "link,\n"
+    "approach, retreat; in .ply and .vtp 0 to 3), x,y,z, nx,ny,nz (tool axis), hx,hy,hz (direction of travel), "
+    "qw,qx,qy,qz\n"
+    "(quaternion that takes z to the axis and x to the travel), arclength (from the first pose).\n"
     "\n"
     "Examples:\n"
     "  ahm coverage scan.ply --source 0.1,0.2,1.4 --radius 0.2 --spacing 0.01 -o path.csv\n"
-    "  ahm coverage part.stl --source 17 --radius 30 --spacing 2 --pattern spiral -o path.ply";
+    "  ahm coverage part.stl --source 17 --radius 30 --spacing 2 --pattern spiral -o path.ply\n"
+    "  ahm coverage part.obj --whole --spacing 2 -o path.csv\n"
+    "  ahm coverage part.obj --whole --spacing 2 --facing 0,0,1 --max-angle 60 -o path.vtp --json path.json";
 
 struct CoverageCommandOptions {
   InputOptions input;
@@ -70,6 +84,8 @@ struct CoverageCommandOptions {
   SolveOptions solve;
   OutputOptions output;
   CoverageOptions path;
+  WholeOptions whole;
+  bool has_source = false;
   double min_quality = reliable_quality;
 };
 
@@ -171,6 +187,13 @@ void report(const CoverageCommandOptions& options, const Input& input, const Sur
 }
 
 void run(const CoverageCommandOptions& options) {
+  if (options.whole.whole) {
+    WholeOptions whole = options.whole;
+    whole.path.spacing = options.path.spacing;
+    whole.path.step = options.path.step;
+    return run_whole(options.input, options.output, whole,
+                     options.has_source ? std::optional(options.source.spec) : std::nullopt, options.path.radius);
+  }
   check_results(options.input.path, options.output, {".csv", ".jsonl", ".ply", ".vtp"});
   Journal journal(options.output.verbosity);
   const Input input = open_around(options.input, options.path.radius, journal, options.source.spec);
@@ -218,9 +241,9 @@ void run(const CoverageCommandOptions& options) {
 
 void offer(CLI::App& app, CoverageCommandOptions& o) {
   add_input(app, o.input);
-  add_source(app, o.source, "Center of the covered disc, see below")->required();
-  add_parsed(app, "--radius", o.path.radius, parse_positive, "R", "Radius of the covered disc, along the surface")
-      ->required();
+  auto* source = add_source(app, o.source, "Center of the covered disc, see below");
+  auto* radius =
+      add_parsed(app, "--radius", o.path.radius, parse_positive, "R", "Radius of the covered disc, along the surface");
   add_parsed(app, "--spacing", o.path.spacing, parse_positive, "S", "Distance between neighboring lines or turns")
       ->required();
   add_table_output(app, o.output)->required();
@@ -236,6 +259,13 @@ void offer(CLI::App& app, CoverageCommandOptions& o) {
   add_graph_options(app, o.input, o.solve);
   add_local(app, o.input, "Up to --radius");
   add_map_results(app, o.output);
+  offer_whole(app, o.whole);
+  app.callback([=, &o] {
+    o.has_source = source->count() > 0;
+    if (!o.whole.whole && source->count() == 0) throw CLI::RequiredError("--source");
+    if ((!o.whole.whole || o.has_source) && radius->count() == 0) throw CLI::RequiredError("--radius");
+    if (o.whole.whole && !o.has_source && radius->count() > 0) throw CLI::RequiredError("--source");
+  });
 }
 
 }  // namespace

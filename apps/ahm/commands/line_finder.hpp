@@ -58,6 +58,7 @@ struct Polylines {  // NOLINT(bugprone-exception-escape): assertions in the dest
   std::vector<Index> begin =
       {};                 ///< index of the first point of each curve; equal to the next one for curves without points
   bool numbered = false;  ///< whether the table has a column with the number of the curve
+  std::vector<double> levels = {};   ///< level of each curve, a column of the table; empty: no column
   nlohmann::ordered_json json = {};  ///< report for programs, after the head of the summary
   std::string text = {};             ///< report for users
 

@@ -92,6 +92,14 @@ TEST(CostsExperiment, ExactMapsHaveNoErrorAndMemoryIsMeasured) {
   EXPECT_GT(table.smallest("added MB"), 0);
 }
 
+TEST(ToolpathsExperiment, PathsCoverAllParts) {
+  const Table& table = toy("toolpaths");
+  EXPECT_GE(table.smallest("covered"), 0.99);
+  EXPECT_LE(table.largest("largest gap / spacing"), 1.25);
+  EXPECT_LE(table.largest("double"), 0.03);
+  EXPECT_EQ(table.largest("missing links"), 0);
+}
+
 TEST(TrustExperiment, VectorsThatAreTrustedAreRight) {
   const Table& table = toy("trust");
   EXPECT_GE(table.where("as", "triangles").smallest("area under curve"), 0.9);

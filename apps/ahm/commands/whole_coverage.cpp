@@ -1,0 +1,228 @@
+#include "commands/whole_coverage.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "ahm/error.hpp"
+#include "ahm/io/write.hpp"
+#include "cli/option_adders.hpp"
+#include "cli/source_list.hpp"
+#include "commands/line_finder.hpp"
+#include "input/open.hpp"
+#include "output/output_paths.hpp"
+#include "output/results.hpp"
+#include "output/summary.hpp"
+#include "output/wording.hpp"
+
+namespace ahm::app {
+namespace {
+
+std::vector<double> parse_plane(const std::string& text) {
+  std::vector<double> numbers = parse_numbers(text);
+  if (numbers.size() != 6)
+    throw std::invalid_argument("expected a point and a normal, six numbers separated by commas");
+  if (std::hypot(numbers[3], numbers[4], numbers[5]) == 0) throw std::invalid_argument("the normal is zero");
+  return numbers;
+}
+
+const char* word(PassOrigin origin) {
+  switch (origin) {
+    case PassOrigin::seed:
+      return "seed";
+    case PassOrigin::level:
+      return "level";
+    case PassOrigin::cut_locus:
+      return "cut_locus";
+    case PassOrigin::boundary:
+      return "boundary";
+  }
+  return "";
+}
+
+/// One row per pose, and an edge between consecutive poses.
+void write_poses(const OutputOptions& output, const ToolPath& path) {
+  std::vector<Index> pass;
+  std::vector<std::uint8_t> kind;
+  std::vector<Vec3> position, normal, heading;
+  std::vector<double> q[4], arclength;
+  io::Table table{.title = "tool path by libahm", .text = true};
+  for (const ToolPose& pose : path.poses) {
+    const auto row = static_cast<Index>(pass.size());
+    if (row > 0) table.edges.push_back({row - 1, row});
+    pass.push_back(pose.pass), kind.push_back(static_cast<std::uint8_t>(pose.kind));
+    position.push_back(pose.position), normal.push_back(pose.axis), heading.push_back(pose.travel);
+    for (std::size_t c = 0; c < 4; ++c) q[c].push_back(pose.quaternion[c]);
+    arclength.push_back(pose.arclength);
+  }
+  table.add("pass", pass);
+  table.columns.push_back({{"kind"}, io::CodedWords{kind, {"pass", "link", "approach", "retreat"}}});
+  table.add({"x", "y", "z"}, position);
+  table.add({"nx", "ny", "nz"}, normal);
+  table.add({"hx", "hy", "hz"}, heading);
+  for (std::size_t c = 0; c < 4; ++c) table.add(std::string("q") + "wxyz"[c], q[c]);
+  table.add("arclength", arclength);
+  io::write(output.output, table, output.format);
+}
+
+/// The region of --mask: rows whose value is not zero.
+std::vector<bool> mask_of(const io::Geometry& geometry, const std::string& name) {
+  for (const io::Property& property : geometry.properties) {
+    if (property.name != name) continue;
+    std::vector<bool> rows;
+    for (const double value : property.values) rows.push_back(value != 0 && !std::isnan(value));
+    return rows;
+  }
+  throw InvalidArgument(fmt::format("--mask {}: the input has no such column", name));
+}
+
+ToolPathSeed seed_of(const WholeOptions& options, const Input& input) {
+  if (options.from_boundary) return BoundarySeed{};
+  if (const auto& p = options.plane; !p.empty()) return PlaneSeed{{p[0], p[1], p[2]}, {p[3], p[4], p[5]}};
+  if (options.line) return LineSeed{point_on_surface(input, *options.line, "--seed-line"), *options.direction};
+  if (options.curve.empty()) return AutomaticSeed{};
+  CurveSeed curve{{}, options.closed};
+  for (const SourceSpec& spec : options.curve) curve.points.push_back(position_of(input, spec, "--seed-curve"));
+  return curve;
+}
+
+void write_view(const InputOptions& input_options, const OutputOptions& output, const Input& input,
+                const ToolPath& path, Journal& journal) {
+  if (output.view.empty()) return;
+  Results results(output, input, input_options);
+  render::Scene scene = results.scene();
+  render::PictureOptions picture;
+  picture.pattern = render::Pattern::none;
+  std::vector<Vec3> curve;
+  std::vector<Index> pieces;
+  for (const ToolPass& pass : path.passes) {
+    if (!curve.empty()) pieces.push_back(static_cast<Index>(curve.size()));
+    for (std::size_t k = pass.begin; k < pass.end; ++k) curve.push_back(path.poses[k].position);
+  }
+  scene.curve = curve;
+  scene.curve_pieces = pieces;
+  results.write_view(scene, journal, picture);
+}
+
+void report(const std::string& input_path, const OutputOptions& output, const Input& input, const ToolPath& path,
+            const ToolPathMeasures& measures, Journal& journal) {
+  nlohmann::ordered_json j = summary("ahm coverage", input_path, output, input);
+  j["pattern"] = "whole";
+  j["spacing"] = path.spacing;
+  j["points"] = path.poses.size();
+  j["pass_length"] = path.pass_length;
+  j["link_length"] = path.link_length;
+  j["links"] = {{"on_surface", path.surface_links}, {"lifted", path.lifted_links}, {"missing", path.missing_links}};
+  j["area"] = measures.area;
+  j["covered"] = measures.covered;
+  j["largest_gap"] = measures.largest_gap;
+  j["double_covered"] = measures.double_covered;
+  for (std::size_t k = 0; k < path.passes.size() && !output.json.empty(); ++k) {
+    const ToolPass& pass = path.passes[k];
+    j["passes"].push_back({{"pass", k},
+                           {"kind", word(pass.origin)},
+                           {"closed", pass.closed},
+                           {"distance", pass.distance},
+                           {"length", pass.length},
+                           {"first", pass.begin},
+                           {"points", pass.end - pass.begin}});
+  }
+  deliver(
+      std::move(j),
+      fmt::format("{} of length {:.4g}, {} poses; links: {} on the surface, {} lifted, length {:.4g}\n"
+                  "covered: {:.2f} % of the area within 0.6 spacings; largest gap {:.2f} spacings; double: {:.2f} % of "
+                  "the passes\n",
+                  path.passes.size() == 1 ? "1 pass" : fmt::format("{} passes", path.passes.size()), path.pass_length,
+                  path.poses.size(), path.surface_links, path.lifted_links, path.link_length, 100 * measures.covered,
+                  measures.largest_gap, 100 * measures.double_covered),
+      output, journal);
+}
+
+}  // namespace
+
+void offer_whole(CLI::App& app, WholeOptions& o) {
+  auto* whole =
+      app.add_flag("--whole", o.whole, "Cover the whole surface, closed or not; --source and --radius limit it");
+  const auto add = [&](const std::string& name, auto& value, const auto& parse, const char* type, const char* help) {
+    return add_parsed(app, name, value, parse, type, help)->needs(whole);
+  };
+  auto* boundary =
+      app.add_flag("--seed-boundary", o.from_boundary, "With --whole: passes parallel to the longest boundary loop")
+          ->needs(whole);
+  auto* plane =
+      add("--seed-plane", o.plane, parse_plane, "X,Y,Z,NX,NY,NZ", "Passes parallel to the section with a plane");
+  auto* curve = add("--seed-curve", o.curve, parse_sources, "POINTS",
+                    "Passes parallel to the curve through points: list or file of SPECs");
+  app.add_flag("--seed-closed", o.closed, "Close the curve of --seed-curve")->needs(curve);
+  auto* line = add(
+      "--seed-line", o.line, [](const std::string& text) { return parse_source(text); }, "SPEC",
+      "Passes parallel to the straight line through a point");
+  auto* direction = add(
+      "--direction", o.direction, [](const std::string& text) { return parse_direction(text); }, "X,Y,Z",
+      "Direction of --seed-line");
+  line->needs(direction);
+  direction->needs(line);
+  std::vector<CLI::Option*> seeds{boundary, plane, curve, line};
+  for (auto* a : seeds)
+    for (auto* b : seeds)
+      if (a != b) a->excludes(b);
+  add("--mask", o.mask, non_empty, "NAME", "Cover only triangles whose corners have a nonzero value in column NAME");
+  auto* facing = add(
+      "--facing", o.facing, [](const std::string& text) { return parse_direction(text); }, "X,Y,Z",
+      "Cover only triangles whose normal is near a direction");
+  add("--max-angle", o.max_angle, parse_degrees, "DEG", "Largest angle between normal and --facing (default 45)")
+      ->needs(facing);
+  add("--chord-error", o.path.chord_error, parse_positive, "E",
+      "Largest distance of the passes from the chords between poses (default: S / 200)");
+  add("--tool-radius", o.path.tool_radius, parse_positive, "R",
+      "The tool axis is the mean normal within R (default: S / 2)");
+  add("--clearance", o.path.clearance, parse_positive, "H", "Height of lifted links over the surface (default: S)");
+  add("--max-link", o.path.max_link, parse_positive, "L",
+      "Longest link on the surface; longer ones are lifted (default: 3 S)");
+  auto* one_way = app.add_flag("--one-way", o.path.one_way, "All passes run in the same direction")->needs(whole);
+  app.add_flag("--zigzag", o.zigzag, "Directions of passes alternate (default)")->needs(whole)->excludes(one_way);
+}
+
+void run_whole(const InputOptions& input_options, const OutputOptions& output, const WholeOptions& options,
+               const std::optional<SourceSpec>& source, double radius) {
+  check_results(input_options.path, output, {".csv", ".jsonl", ".ply", ".vtp"});
+  if (input_options.around_source)
+    throw InvalidArgument("--local: cannot be combined with --whole, which needs the whole input");
+  Journal journal(output.verbosity);
+  std::vector<SourceSpec> named = options.curve;
+  for (const auto& spec : {source, options.line})
+    if (spec) named.push_back(*spec);
+  const Input input = open_input(with_named_points(input_options, named), journal);
+  ToolPathOptions o = options.path;
+  o.seed = seed_of(options, input);
+  o.progress = journal.progress();
+  o.threads = input_options.threads;
+  if (source) o.region.disc = {point_on_surface(input, *source, "--source"), radius};
+  if (!options.mask.empty()) o.region.rows = mask_of(input.geometry, options.mask);
+  if (options.facing) o.region.facing = {*options.facing, options.max_angle};
+  journal.start("path");
+  const ToolPath path = tool_path(input.surface(), o);
+  journal.start("measures");
+  const ToolPathMeasures measures = tool_path_measures(input.surface(), path, o.region);
+  if (path.uncovered_components > 0)
+    journal.add_warning(fmt::format(
+        "{} not covered: the seed does not reach {}",
+        path.uncovered_components == 1 ? "1 component is" : fmt::format("{} components are", path.uncovered_components),
+        path.uncovered_components == 1 ? "it" : "them"));
+  if (path.missing_links > 0)
+    journal.add_warning(
+        fmt::format("links without a free path at the clearance: {}; raise or lower --clearance", path.missing_links));
+  if (measures.covered < 0.99 || measures.largest_gap > 1.25)
+    journal.add_warning(
+        fmt::format("gaps: {:.2f} % of the area is farther than 0.6 spacings from a pass, the farthest point {:.2f} "
+                    "spacings",
+                    100 * (1 - measures.covered), measures.largest_gap));
+  write_view(input_options, output, input, path, journal);
+  journal.start("write");
+  write_poses(output, path);
+  report(input_options.path, output, input, path, measures, journal);
+}
+
+}  // namespace ahm::app

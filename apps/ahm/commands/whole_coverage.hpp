@@ -1,0 +1,39 @@
+/// \file
+/// 'ahm coverage --whole': tool paths over whole surfaces.
+#pragma once
+
+#include <CLI/App.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ahm/applications/tool_path.hpp"
+#include "cli/options.hpp"
+
+namespace ahm::app {
+
+/// Options of tool paths over whole surfaces.
+struct WholeOptions {
+  bool whole = false;
+  bool from_boundary = false;
+  std::vector<double> plane;  ///< point and normal: six numbers; empty: none
+  std::vector<SourceSpec> curve;
+  bool closed = false;
+  std::optional<SourceSpec> line;
+  std::optional<Vec3> direction;
+  bool zigzag = false;  ///< the default, for completeness
+  std::string mask;
+  std::optional<Vec3> facing;
+  double max_angle = 0.785398163397448;  ///< radians
+  ToolPathOptions path = {};
+};
+
+/// Adds --whole and the options that need it.
+void offer_whole(CLI::App& app, WholeOptions& o);
+
+/// Covers the whole surface, or the disc around the source.
+/// @param radius  0: no disc
+void run_whole(const InputOptions& input, const OutputOptions& output, const WholeOptions& options,
+               const std::optional<SourceSpec>& source, double radius);
+
+}  // namespace ahm::app

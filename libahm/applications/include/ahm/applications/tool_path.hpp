@@ -1,0 +1,153 @@
+/// \file
+/// Tool paths over whole surfaces: passes at equal geodesic distance, links between them, and poses of the tool.
+///
+/// \code
+/// ahm::ToolPath path = ahm::tool_path(surface, {.spacing = 2});
+/// for (const ahm::ToolPose& pose : path.poses) move_to(pose.position, pose.axis, pose.travel);
+/// ahm::ToolPathMeasures measures = ahm::tool_path_measures(surface, path);       // area covered, gaps, double cover
+/// \endcode
+#pragma once
+
+#include <array>
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "ahm/applications/stroke.hpp"
+#include "ahm/progress.hpp"
+#include "ahm/surface/surface.hpp"
+
+namespace ahm {
+
+/// The passes are parallel to the section of each component with a plane through its center. The plane contains the
+/// longest direction of the component, and the direction in which it is thinnest.
+struct AutomaticSeed {};
+/// The passes are parallel to the section with a plane.
+struct PlaneSeed {
+  Vec3 point, normal;  ///< world units; the normal has any length > 0
+};
+/// The passes are parallel to the longest boundary loop of each component. The first pass is half a spacing from it.
+struct BoundarySeed {};
+/// The passes are parallel to a curve on the surface, joined as by `draw_curve`.
+struct CurveSeed {
+  std::vector<Vec3> points;  ///< at least 2, at most half a spacing from the surface, world units
+  bool closed = false;
+};
+/// The passes are parallel to the geodesic line through a point, in both directions to the boundary. On closed surfaces it
+/// ends after the length of the diagonal of the bounding box.
+struct LineSeed {
+  SurfacePoint point;
+  Vec3 direction;  ///< in space; projected to the surface
+};
+using ToolPathSeed = std::variant<AutomaticSeed, PlaneSeed, BoundarySeed, CurveSeed, LineSeed>;
+
+/// The part of the surface to cover: the triangles that fulfill all conditions.
+struct ToolPathRegion {
+  std::vector<bool> rows;  ///< one per row: triangles whose corners are all true; empty: all rows
+  /// Triangles whose normals are at most this far from a direction.
+  struct Facing {
+    Vec3 direction;
+    double angle;  ///< radians
+  };
+  std::optional<Facing> facing;
+  /// Triangles within this distance of a point, along the surface.
+  struct Disc {
+    SurfacePoint center;
+    double radius;  ///< world units
+  };
+  std::optional<Disc> disc;
+};
+
+struct ToolPathOptions {
+  double spacing = 0;  ///< geodesic distance between neighboring passes, world units; > 0
+  ToolPathSeed seed = AutomaticSeed{};
+  ToolPathRegion region = {};
+  double step = 0;  ///< longest distance between poses of a pass, world units; 0: a quarter of the spacing
+  double chord_error =
+      0;  ///< poses may be left out where the path stays this close to the chord, world units; 0: none are
+  double tool_radius = 0;  ///< the tool axis is the mean normal within this radius, world units; 0: half of the spacing
+  double clearance = 0;    ///< height of lifted links over the surface, world units; 0: the spacing
+  double max_link = 0;     ///< longest link on the surface; longer links are lifted. World units; 0: three spacings
+  bool one_way =
+      false;  ///< all passes run in the direction of the seed; false: directions alternate to shorten the links
+  Progress progress = {};
+  unsigned threads = 0;  ///< 0: one per core; the result does not depend on it
+};
+
+enum class ToolMotion {
+  pass,      ///< along a pass
+  link,      ///< from pass to pass, on the surface or lifted
+  approach,  ///< from the clearance down to the start of a pass
+  retreat,   ///< from the end of a pass up to the clearance
+};
+
+/// A pose of the tool.
+struct ToolPose {
+  Vec3 position;  ///< on the surface, except for lifted links, approach and retreat; world units
+  Vec3 axis;      ///< unit vector away from the surface: the mean normal within the tool radius
+  Vec3 travel;    ///< unit vector perpendicular to the axis: direction of travel
+  /// Rotation (w, x, y, z) that takes z to `axis` and x to `travel`. Signs are such that consecutive poses are close.
+  std::array<double, 4> quaternion;
+  Index pass;  ///< number of the pass; on links, that of the next pass
+  ToolMotion kind;
+  double arclength;  ///< length of the path up to this pose, world units
+};
+
+/// Why a pass is where it is.
+enum class PassOrigin {
+  seed,       ///< the seed curve itself
+  level,      ///< at a multiple of the spacing from the seed
+  cut_locus,  ///< where fronts from two sides meet, and leave a gap or would cover twice
+  boundary,   ///< along the boundary, to close a gap
+};
+
+struct ToolPass {
+  std::size_t begin, end;  ///< its poses
+  bool closed;             ///< whether it ends where it begins
+  PassOrigin origin;
+  double distance;  ///< distance from the seed, world units; on cut loci and boundaries the mean
+  double length;    ///< world units
+};
+
+struct ToolPath {
+  std::vector<ToolPose> poses;  ///< in order of travel
+  std::vector<ToolPass> passes;
+  double spacing = 0;                       ///< of the options, world units
+  double pass_length = 0, link_length = 0;  ///< links: with approach and retreat; world units
+  Index surface_links = 0;                  ///< links on the surface
+  Index lifted_links = 0;                   ///< links at the clearance
+  /// Links that are missing: no path on the surface or at the clearance was found that does not cut the surface. The tool
+  /// must move from the last pose of the pass to the next pass by other means.
+  Index missing_links = 0;
+  Index uncovered_components = 0;  ///< components of the region without a seed
+};
+
+/// Covers a surface, or a region, with passes at equal geodesic distance.
+///
+/// Passes are the level sets of the exact distance from the seed curve, on flat faces. Where two fronts meet at an acute
+/// angle to the cut locus, one pass along the cut locus replaces the pair that would cover twice, or fills the gap. The same
+/// is done along boundaries. Passes are ordered by their nearest ends and improved by 2-opt exchanges.
+/// @throws InvalidArgument (a value that is not finite or out of range; faults "spacing_too_large": larger than the
+/// region, "seed_off_surface", "region_empty"; a surface without positions or triangles), InvalidGeometry (faces without
+/// area, needles: as `exact::exact_map`), ResourceExhausted, Cancelled
+ToolPath tool_path(const Surface& surface, const ToolPathOptions& options);
+
+/// How well a tool path covers a surface.
+struct ToolPathMeasures {
+  double area = 0;         ///< area of the region, world units squared
+  double covered = 0;      ///< share of the area within 0.6 spacings of a pass, along the surface
+  double largest_gap = 0;  ///< largest distance of a point of the region from the nearest pass, in spacings
+  /// Share of the pass length that is closer than 0.5 spacings, in space, to another pass, or to the same pass more than two
+  /// spacings along it. Points on opposite sides of a wall are not compared.
+  double double_covered = 0;
+};
+
+/// Measures a tool path independently of its construction. Distances are exact ones from the poses of the passes, and are
+/// measured at points that are spread over the area, and at all vertices.
+/// @param region   region of the options of the path
+/// @param samples  number of points per square spacing
+/// @throws as `tool_path`
+ToolPathMeasures tool_path_measures(const Surface& surface, const ToolPath& path, const ToolPathRegion& region = {},
+                                    double samples = 12);
+
+}  // namespace ahm

@@ -1,0 +1,48 @@
+/// \file
+/// The domain of tool paths: triangles smaller than the spacing, with exact distances from curves.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "ahm/progress.hpp"
+#include "ahm/surface/exact/exact_map.hpp"
+#include "face_mesh.hpp"
+
+namespace ahm {
+
+/// A mesh of the same shape with sides of at most `longest`. The faces of `parents` are the parents of the new ones.
+/// @param parents  receives the face of `mesh` that contains each new face; may be null
+/// @throws ResourceExhausted (more than 2^26 faces)
+FaceMesh refined(const FaceMesh& mesh, double longest, std::vector<Index>* parents = nullptr);
+
+/// The part of a mesh with some of its faces. @param kept  one per face
+FaceMesh part_of(const FaceMesh& mesh, const std::vector<bool>& kept);
+
+/// A mesh as a polyhedral surface, in the same units.
+exact::PolyhedralSurface polyhedral(const FaceMesh& mesh);
+
+/// Finds points of a mesh near positions, with a grid of cubes.
+class FaceLocator {
+ public:
+  /// @param reach  largest distance of `nearest`; about the length of the sides
+  FaceLocator(const FaceMesh& mesh, double reach);
+  ~FaceLocator();
+  FaceLocator(FaceLocator&&) noexcept;
+
+  /// The nearest point of the mesh within the reach; none where there is none.
+  std::optional<exact::MeshPoint> nearest(const Vec3& position) const;
+
+ private:
+  struct Grid;
+  const FaceMesh* mesh_;
+  double reach_;
+  std::unique_ptr<Grid> grid_;
+};
+
+/// The nearest point of a triangle, as barycentric coordinates.
+std::array<double, 3> nearest_in_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
+
+}  // namespace ahm

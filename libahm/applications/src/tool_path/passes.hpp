@@ -1,0 +1,47 @@
+/// \file
+/// The passes of a tool path, as curves on the fine mesh. Lengths are in spacings.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "ahm/applications/tool_path.hpp"
+#include "tool_path/fine_mesh.hpp"
+
+namespace ahm {
+
+/// A pass before it has poses.
+struct PassCurve {
+  MeshCurve curve;
+  PassOrigin origin = PassOrigin::level;
+  double distance = 0;  ///< from the seed; on cut loci and boundaries the mean
+};
+
+/// The mesh to cover, and its exact geodesics.
+struct PathDomain {
+  explicit PathDomain(FaceMesh triangles) : mesh(std::move(triangles)), surface(polyhedral(mesh)), locator(mesh, 0.5) {}
+  PathDomain(const PathDomain&) = delete;
+  PathDomain& operator=(const PathDomain&) = delete;
+
+  FaceMesh mesh;
+  exact::PolyhedralSurface surface;
+  FaceLocator locator;
+};
+
+/// Longest side of the fine mesh, and longest distance between the points that represent a curve in exact maps.
+inline constexpr double longest_side = 0.4, curve_step = 0.125;
+
+/// Points on a curve at most `step` apart, including its corners.
+std::vector<exact::MeshPoint> samples(const FaceMesh& mesh, const MeshCurve& curve, double step);
+double curve_length(const FaceMesh& mesh, const MeshCurve& curve);
+
+/// A curve through points in their order, joined by locally shortest paths.
+/// @throws InvalidArgument (points in different components)
+MeshCurve joined_curve(const PathDomain& domain, std::span<const exact::MeshPoint> points, bool closed);
+
+/// All passes around seed curves.
+/// @param phase  distance of the first pass from the seed: 0 or 0.5
+std::vector<PassCurve> make_passes(const PathDomain& domain, const std::vector<MeshCurve>& seeds, double phase,
+                                   const Progress& progress);
+
+}  // namespace ahm

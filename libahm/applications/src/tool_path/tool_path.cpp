@@ -1,0 +1,282 @@
+#include "tool_path/tool_path.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <string>
+
+#include "ahm/error.hpp"
+#include "ahm/surface/exact/exact_geodesics.hpp"
+#include "ahm/surface/exact/flat_triangles.hpp"
+#include "ahm/surface/surface_paths.hpp"
+#include "ahm/util/small_math.hpp"
+#include "ahm/util/text.hpp"
+#include "ahm/util/vec.hpp"
+
+namespace ahm {
+namespace {
+
+using detail::Half;
+using exact::MeshPoint;
+
+constexpr double no_height = std::numeric_limits<double>::quiet_NaN();
+
+/// Points of a seed curve that are farther than this from the surface are rejected, in spacings.
+constexpr double largest_seed_distance = 0.5;
+
+void check_positive(const std::string& name, double value) {
+  if (!(value > 0 && std::isfinite(value)))
+    throw InvalidArgument(name + " is " + detail::number(value) + "; it must be finite and > 0");
+}
+
+void check(const ToolPathOptions& o) {
+  check_positive("spacing", o.spacing);
+  for (const auto& [name, value] : {std::pair{"step", o.step},
+                                    {"chord_error", o.chord_error},
+                                    {"tool_radius", o.tool_radius},
+                                    {"clearance", o.clearance},
+                                    {"max_link", o.max_link}})
+    if (value != 0) check_positive(name, value);
+}
+
+/// The longest diagonal of the bounding box.
+double extent(const FaceMesh& mesh) {
+  Vec3 low = mesh.points.front(), high = low;
+  for (const Vec3& p : mesh.points)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      low[axis] = std::min(low[axis], p[axis]), high[axis] = std::max(high[axis], p[axis]);
+  return distance(low, high);
+}
+
+/// Keeps the faces within a distance along the surface of a point.
+void keep_disc(const Surface& surface, const ToolPathRegion::Disc& disc, double spacing, const FaceMesh& mesh,
+               std::vector<bool>& kept) {
+  check_positive("the radius of the region", disc.radius);
+  const PathDomain domain(mesh);
+  const auto center = domain.locator.nearest((1 / spacing) * surface.position(disc.center));
+  std::fill(kept.begin(), kept.end(), false);
+  if (!center) return;
+  exact::ExactOptions options;
+  options.radius = disc.radius / spacing;
+  const exact::ExactMap map = exact::exact_map(domain.surface, *center, options);
+  for (std::size_t f = 0; f < mesh.size(); ++f)
+    kept[f] = std::ranges::all_of(mesh.faces[f], [&](Index p) { return map.status(Vertex(p)) == Status::ok; });
+}
+
+/// A component of the mesh: the faces whose points have this component number.
+struct Component {
+  Index number;
+  Vec3 center{};
+  Vec3 normal{};  ///< of the plane of the automatic seed
+};
+
+/// Centers and principal directions of all components, by area.
+std::vector<Component> components(const PathDomain& domain) {
+  struct Moments {
+    double area = 0;
+    Eigen::Vector3d first = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d second = Eigen::Matrix3d::Zero();
+  };
+  const FaceMesh& mesh = domain.mesh;
+  std::map<Index, Moments> all;
+  for (std::size_t f = 0; f < mesh.size(); ++f) {
+    Moments& m = all[domain.surface.component(mesh.faces[f][0])];
+    const Vec3 c = mesh.position({static_cast<Index>(f), {1.0 / 3, 1.0 / 3, 1.0 / 3}});
+    const Eigen::Vector3d center(c[0], c[1], c[2]);
+    const double area = mesh.area(static_cast<Index>(f));
+    m.area += area;
+    m.first += area * center;
+    m.second += area * center * center.transpose();
+  }
+  std::vector<Component> result;
+  for (const auto& [number, m] : all) {
+    const Eigen::Vector3d center = m.first / m.area;
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(m.second / m.area - center * center.transpose());
+    const Eigen::Vector3d middle = axes.eigenvectors().col(1);
+    result.push_back({number, {center[0], center[1], center[2]}, {middle[0], middle[1], middle[2]}});
+  }
+  return result;
+}
+
+/// The section of a mesh with a plane. @param component  number of a component; -1: all
+std::vector<MeshCurve> section(const PathDomain& domain, const Vec3& point, const Vec3& normal, Index component = -1) {
+  std::vector<double> heights;
+  for (std::size_t p = 0; p < domain.mesh.points.size(); ++p)
+    heights.push_back(component < 0 || domain.surface.component(static_cast<Index>(p)) == component
+                          ? dot(domain.mesh.points[p] - point, normal)
+                          : no_height);
+  return level_curves(domain.mesh, heights, 0);
+}
+
+/// The longest boundary loop of each component.
+std::vector<MeshCurve> longest_loops(const PathDomain& domain) {
+  const FaceMesh& mesh = domain.mesh;
+  std::map<Index, Half> leaving;
+  for (std::size_t h = 0; h < mesh.twin.size(); ++h)
+    if (mesh.twin[h] < 0) leaving[mesh.tail(static_cast<Half>(h))] = static_cast<Half>(h);
+  std::map<Index, std::pair<double, MeshCurve>> longest;
+  while (!leaving.empty()) {
+    MeshCurve loop;
+    loop.closed = true;
+    Index vertex = leaving.begin()->first;
+    const Index component = domain.surface.component(vertex);
+    for (auto next = leaving.find(vertex); next != leaving.end(); next = leaving.find(vertex)) {
+      const Half half = next->second;
+      MeshPoint p{half / 3, {0, 0, 0}};
+      p.barycentric[to_size(half % 3)] = 1;
+      loop.points.push_back(p);
+      loop.faces.push_back(half / 3);
+      vertex = mesh.head(half);
+      leaving.erase(next);
+    }
+    const double length = curve_length(mesh, loop);
+    if (auto& best = longest[component]; length > best.first) best = {length, std::move(loop)};
+  }
+  std::vector<MeshCurve> result;
+  for (auto& [component, loop] : longest) result.push_back(std::move(loop.second));
+  return result;
+}
+
+/// A curve in space, moved to the mesh.
+MeshCurve on_mesh(const PathDomain& domain, std::span<const Vec3> points, bool closed, double spacing) {
+  std::vector<MeshPoint> found;
+  for (const Vec3& p : points)
+    if (const auto point = domain.locator.nearest((1 / spacing) * p)) found.push_back(*point);
+  if (found.size() < 2)
+    throw InvalidArgument("seed_off_surface", "the seed curve does not lie in the region",
+                          "choose a curve on the part of the surface that is covered");
+  return joined_curve(domain, found, closed && found.size() == points.size());
+}
+
+struct SeedFinder {
+  const Surface& surface;
+  const PathDomain& domain;
+  double spacing;
+
+  std::vector<MeshCurve> operator()(const AutomaticSeed&) const {
+    std::vector<MeshCurve> result;
+    for (const Component& component : components(domain)) {
+      const std::vector<MeshCurve> of_one = section(domain, component.center, component.normal, component.number);
+      result.insert(result.end(), of_one.begin(), of_one.end());
+    }
+    return result;
+  }
+  std::vector<MeshCurve> operator()(const PlaneSeed& plane) const {
+    const double length = norm(plane.normal);
+    if (!(length > 0 && std::isfinite(length)) || !is_finite(plane.point))
+      throw InvalidArgument("the plane of the seed has no finite point or no normal");
+    std::vector<MeshCurve> result = section(domain, (1 / spacing) * plane.point, (1 / length) * plane.normal);
+    if (result.empty())
+      throw InvalidArgument("seed_off_surface", "the plane of the seed does not cross the region", "move the plane");
+    return result;
+  }
+  std::vector<MeshCurve> operator()(const BoundarySeed&) const {
+    std::vector<MeshCurve> result = longest_loops(domain);
+    if (result.empty())
+      throw InvalidArgument("seed_off_surface", "the region has no boundary to start from", "use another seed");
+    return result;
+  }
+  std::vector<MeshCurve> operator()(const CurveSeed& curve) const {
+    std::vector<CurvePoint> points;
+    for (std::size_t k = 0; k < curve.points.size(); ++k) {
+      const double away = surface.closest_point(curve.points[k]).distance;
+      if (away > largest_seed_distance * spacing)
+        throw InvalidArgument("seed_off_surface",
+                              "point " + std::to_string(k) + " of the seed curve is " + detail::number(away) +
+                                  " from the surface, more than half of the spacing",
+                              "use points on the surface");
+      points.emplace_back(curve.points[k]);
+    }
+    const SurfaceCurve drawn = draw_curve(surface, points, {.closed = curve.closed});
+    return {on_mesh(domain, drawn.points, curve.closed, spacing)};
+  }
+  std::vector<MeshCurve> operator()(const LineSeed& line) const {
+    const double length = extent(domain.mesh) * spacing;
+    std::vector<Vec3> points;
+    for (const double side : {-1.0, 1.0}) {
+      std::vector<Vec3> half;
+      if (surface.faces().size() > 0) {
+        const ExactGeodesics geodesics(surface);
+        for (const MeshPoint& p : geodesics.trace(line.point, side * line.direction, length).points)
+          half.push_back(geodesics.position(p));
+      } else {
+        half = trace_line(surface, line.point, side * line.direction, length).points;
+      }
+      if (side < 0) std::reverse(half.begin(), half.end());
+      points.insert(points.end(), half.begin() + (side > 0 && !points.empty() ? 1 : 0), half.end());
+    }
+    return {on_mesh(domain, points, false, spacing)};
+  }
+};
+
+Index count_uncovered(const PathDomain& domain, const std::vector<MeshCurve>& seeds) {
+  std::map<Index, bool> covered;
+  for (const Triangle& face : domain.mesh.faces) covered[domain.surface.component(face[0])];
+  for (const MeshCurve& seed : seeds)
+    covered[domain.surface.component(domain.mesh.faces[to_size(seed.faces.front())][0])] = true;
+  return static_cast<Index>(std::ranges::count_if(covered, [](const auto& c) { return !c.second; }));
+}
+
+}  // namespace
+
+FaceMesh region_mesh(const Surface& surface, const ToolPathRegion& region, double spacing, double longest) {
+  FaceMesh mesh = face_mesh(surface);
+  for (Vec3& p : mesh.points) p = (1 / spacing) * p;
+  const auto keep = [](FaceMesh& of, const std::vector<bool>& kept) {
+    if (std::ranges::find(kept, true) == kept.end())
+      throw InvalidArgument("region_empty", "no triangle lies in the region", "enlarge the region");
+    if (std::ranges::find(kept, false) != kept.end()) of = part_of(of, kept);
+  };
+  if (!region.rows.empty()) {
+    if (region.rows.size() != to_size(surface.rows().row_count()))
+      throw InvalidArgument("the region has " + detail::counted(region.rows.size(), "row") + ", the surface " +
+                            std::to_string(surface.rows().row_count()));
+    std::vector<bool> kept(mesh.size());
+    for (std::size_t f = 0; f < kept.size(); ++f)
+      kept[f] = std::ranges::all_of(mesh.faces[f], [&](Index p) {
+        const auto row = surface.rows().row(Vertex(mesh.vertices[to_size(p)]));
+        return !row || region.rows[to_size(row->index)];
+      });
+    keep(mesh, kept);
+  }
+  if (region.facing) {
+    const double length = norm(region.facing->direction);
+    if (!(length > 0 && std::isfinite(length)))
+      throw InvalidArgument("the direction of the region is zero or not finite");
+    std::vector<bool> kept(mesh.size());
+    for (std::size_t f = 0; f < kept.size(); ++f) {
+      const Vec3 normal = mesh.area_normal(static_cast<Index>(f));
+      kept[f] = dot(normal, region.facing->direction) >= std::cos(region.facing->angle) * norm(normal) * length;
+    }
+    keep(mesh, kept);
+  }
+  if (!(extent(mesh) >= 1))
+    throw InvalidArgument("spacing_too_large",
+                          "the spacing, " + detail::number(spacing) + ", is larger than the region, " +
+                              detail::number(spacing * extent(mesh)) + " across",
+                          "choose a smaller spacing");
+  mesh = refined(mesh, longest);
+  if (region.disc) {
+    std::vector<bool> kept(mesh.size());
+    keep_disc(surface, *region.disc, spacing, mesh, kept);
+    keep(mesh, kept);
+  }
+  return mesh;
+}
+
+ToolPath tool_path(const Surface& surface, const ToolPathOptions& options) {
+  check(options);
+  const PathDomain domain(region_mesh(surface, options.region, options.spacing, longest_side));
+  const std::vector<MeshCurve> seeds = std::visit(SeedFinder{surface, domain, options.spacing}, options.seed);
+  const double phase = std::holds_alternative<BoundarySeed>(options.seed) ? 0.5 : 0;
+  ToolPath path;
+  path.spacing = options.spacing;
+  path.uncovered_components = count_uncovered(domain, seeds);
+  add_poses(surface, domain, make_passes(domain, seeds, phase, options.progress), options, path);
+  return path;
+}
+
+}  // namespace ahm

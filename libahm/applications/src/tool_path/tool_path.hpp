@@ -1,0 +1,20 @@
+/// \file
+/// Parts of tool paths that construction and measures share. Lengths are in spacings.
+#pragma once
+
+#include <vector>
+
+#include "ahm/applications/tool_path.hpp"
+#include "tool_path/passes.hpp"
+
+namespace ahm {
+
+/// The region of a surface as a mesh with short sides, positions divided by the spacing.
+/// @throws InvalidArgument (as `tool_path`)
+FaceMesh region_mesh(const Surface& surface, const ToolPathRegion& region, double spacing, double longest);
+
+/// Puts passes in an order, joins them and computes the poses, in world units.
+void add_poses(const Surface& surface, const PathDomain& domain, std::vector<PassCurve> passes,
+               const ToolPathOptions& options, ToolPath& path);
+
+}  // namespace ahm

@@ -1,0 +1,161 @@
+"""Isolines, and tool paths over whole surfaces."""
+
+from __future__ import annotations
+
+import math
+from typing import Dict, List, NamedTuple, Optional, Sequence, Tuple, Union
+
+import numpy as np
+
+from . import _arguments as arguments
+from . import _core
+from ._options import checked
+from ._progress import Progress, reporting
+from ._solvers import as_body
+from .typing import Array, Matrix, SurfaceLike, Vector
+
+
+class Isoline(NamedTuple):
+    """A polyline on the faces of a surface where a function has a value. Returned by `isolines`."""
+
+    level: float  #: value of the function
+    points: np.ndarray  #: (k, 3) points on the edges, world units; a closed line does not repeat its first point
+    closed: bool  #: whether the last point is joined to the first
+    length: float  #: world units
+
+    def __repr__(self) -> str:
+        kind = "closed" if self.closed else "open"
+        return f"<ahm.Isoline: level {self.level:g}, {arguments.counted(len(self.points), 'point')}, {kind}, length {self.length:g}>"
+
+
+def isolines(surface: SurfaceLike, values: Vector, levels: Union[float, Vector, None] = None, *, every: Optional[float] = None,
+             progress: Progress = None) -> List[Isoline]:
+    """The curves where a function, linear in every triangle, has given values. Larger values are on their left.
+
+    surface : a mesh or a cloud, or (points, faces); clouds have the triangles of their local triangulations.
+    values : (n,) one value per row. Lines end at triangles with a NaN.
+    levels : a number or (k,) numbers.
+    every : instead of `levels`: all multiples of this step, > 0, within the values.
+    progress : callable as in `log_map`.
+
+    >>> import ahm
+    >>> plane = ahm.shapes.plane(5, 3)
+    >>> [(line.level, line.length, line.closed) for line in ahm.isolines(plane, plane[0][:, 0], [0.5, 2.5])]
+    [(0.5, 2.0, False), (2.5, 2.0, False)]
+
+    Raises ValueError naming the argument.
+    """
+    on = as_body(surface)
+    of_rows = arguments.floats(values, "values", (None,))
+    if (levels is None) == (every is None):
+        raise ValueError("levels: use either levels or every")
+    at = np.empty(0) if levels is None else arguments.floats(np.atleast_1d(arguments.unwrapped(levels)), "levels", (None,), finite=True)
+    step = 0.0 if every is None else arguments.real(every, "every", positive=True)
+    with reporting(progress) as report:
+        return [Isoline(*line) for line in _core.isolines(on._body, of_rows, at, step, report)]
+
+
+_KINDS = np.array(["pass", "link", "approach", "retreat"])
+_ORIGINS = ("seed", "level", "cut_locus", "boundary")
+
+
+class ToolPass(NamedTuple):
+    """A pass of a `ToolPath`."""
+
+    begin: int  #: its first pose
+    end: int  #: one after its last pose
+    closed: bool  #: whether it ends where it begins
+    kind: str  #: "seed", "level", "cut_locus" or "boundary": why the pass is there
+    distance: float  #: distance from the seed, world units; on cut loci and boundaries the mean
+    length: float  #: world units
+
+
+class ToolPath(NamedTuple):
+    """A path of a tool over a whole surface: k poses in order of travel. Returned by `tool_path`."""
+
+    position: np.ndarray  #: (k, 3) positions, world units
+    axis: np.ndarray  #: (k, 3) unit vectors away from the surface: mean normals within the tool radius
+    travel: np.ndarray  #: (k, 3) directions of travel, unit vectors perpendicular to the axes
+    quaternion: np.ndarray  #: (k, 4) rotations (w, x, y, z) that take z to the axis and x to the travel
+    pass_number: np.ndarray  #: (k,) int32 number of the pass; on links that of the next pass
+    kind: np.ndarray  #: (k,) "pass", "link", "approach" or "retreat": the motion that ends at the pose
+    arclength: np.ndarray  #: (k,) length of the path from its first pose, world units
+    passes: List[ToolPass]  #: in order of travel
+    #: area, covered (share of the area within 0.6 spacings of a pass), largest_gap (in spacings), double_covered (share of
+    #: the pass length), pass_length, link_length, surface_links, lifted_links, missing_links, uncovered_components
+    measures: Dict[str, float]
+
+    def __repr__(self) -> str:
+        return (f"<ahm.ToolPath: {len(self.passes)} passes, {arguments.counted(len(self.kind), 'pose')}, "
+                f"{100 * self.measures['covered']:.1f} % of the area covered>")
+
+
+def _seed(seed: str, plane: Optional[Tuple[Vector, Vector]], curve: Optional[Matrix]) -> Tuple[str, np.ndarray]:
+    if sum(given is not None for given in (plane, curve)) + (seed != "auto") > 1:
+        raise ValueError("seed: use one of seed, plane and curve")
+    if plane is not None:
+        point, normal = plane
+        along = arguments.vector(normal, "plane[1]")
+        if along is None:
+            raise TypeError("plane[1]: expected three numbers, got None")
+        return "plane", np.stack([arguments.floats(point, "plane[0]", (3,), finite=True), along])
+    if curve is not None:
+        return "curve", arguments.floats(curve, "curve", (None, 3), finite=True)
+    return arguments.choice(seed, "seed", ("auto", "boundary")), np.empty((0, 3))
+
+
+def tool_path(surface: SurfaceLike, spacing: float, *, seed: str = "auto", plane: Optional[Tuple[Vector, Vector]] = None,
+              curve: Optional[Matrix] = None, closed: bool = False, rows: Union[Array, Sequence[bool], None] = None,
+              facing: Optional[Vector] = None, max_angle: float = math.pi / 4,
+              step: Optional[float] = None, chord_error: Optional[float] = None, tool_radius: Optional[float] = None,
+              clearance: Optional[float] = None, max_link: Optional[float] = None, one_way: bool = False,
+              threads: Optional[int] = None, progress: Progress = None) -> ToolPath:
+    """Covers a whole surface, closed or not, with passes at equal geodesic distance, joined by links.
+
+    surface : a mesh or a cloud, or (points, faces).
+    spacing : geodesic distance between neighboring passes, > 0, world units.
+    seed : "auto", passes parallel to the section with a plane through the center along the longest direction; or
+        "boundary", parallel to the longest boundary loop, from half a spacing on.
+    plane : (point, normal): passes parallel to the section with this plane.
+    curve : (n, 3) positions on the surface: passes parallel to the curve through them; `closed` joins its ends.
+    rows : (n,) bool, cover only triangles whose corners are all True.
+    facing, max_angle : cover only triangles whose normal is within `max_angle` (radians) of the vector `facing`.
+    step : longest distance between poses; None: a quarter of the spacing.
+    chord_error : largest distance of a pass from the chord between poses; None: a 200th of the spacing.
+    tool_radius : the tool axis is the mean normal within this radius; None: half of the spacing.
+    clearance : height of lifted links over the surface; None: the spacing.
+    max_link : longest link on the surface, longer ones are lifted; None: three spacings.
+    one_way : all passes run in the direction of the seed.
+    threads : 0 or None: one per core. The result does not depend on it.
+    progress : callable as in `log_map`.
+
+    >>> import ahm
+    >>> path = ahm.tool_path(ahm.shapes.sphere(3), 0.25)
+    >>> path.measures["covered"] > 0.99, path.measures["largest_gap"] < 1.25, path.measures["missing_links"]
+    (True, True, 0)
+
+    Raises ValueError naming the argument, also for a spacing larger than the region and for an empty region.
+    """
+    on = as_body(surface)
+    apart = arguments.real(spacing, "spacing", positive=True)
+    kind, points = _seed(seed, plane, curve)
+    mask = np.empty(0, np.uint8)
+    if rows is not None:
+        given = arguments.array(rows, "rows")
+        if given.dtype != bool or given.ndim != 1:
+            raise ValueError(f"rows: expected an array of bool, one per row, got {arguments.describe(rows, given)}")
+        mask = np.ascontiguousarray(given, dtype=np.uint8)
+    toward = arguments.vector(facing, "facing")
+    lengths = {"chord_error": chord_error, "tool_radius": tool_radius, "clearance": clearance, "max_link": max_link}
+    options = checked(step=step, threads=threads)
+    options["one_way"] = arguments.flag(one_way, "one_way")
+    for name, length in lengths.items():
+        if length is not None:
+            options[name] = arguments.real(length, name, positive=True)
+    with reporting(progress) as report:
+        position, axis, travel, quaternion, number, motion, arclength, passes, measures = _core.tool_path(
+            on._body, apart, kind, points, arguments.flag(closed, "closed"), mask,
+            np.empty(0) if toward is None else toward, arguments.real(max_angle, "max_angle"), options, report)
+    made = [ToolPass(begin, end, is_closed, _ORIGINS[origin], distance, length)
+            for begin, end, is_closed, origin, distance, length in passes]
+    return ToolPath(position, axis, travel, quaternion, number, _KINDS[motion], arclength, made, measures)

@@ -1,0 +1,99 @@
+// Isolines and tool paths over whole surfaces.
+#include "ahm/applications/isolines.hpp"
+#include "ahm/applications/tool_path.hpp"
+#include "ahm/error.hpp"
+#include "compute.hpp"
+#include "map.hpp"
+#include "options.hpp"
+#include "parts.hpp"
+
+namespace ahm::python {
+namespace {
+
+/// @param values  one per row
+/// @param step    levels are its multiples; 0: `levels`
+/// @return a list of (level, points, closed, length)
+py::list isolines_of(const BodyPtr& body, const Doubles& values, const Doubles& levels, double step,
+                     const py::object& report) {
+  const std::span<const double> given = numbers(values), wanted = numbers(levels);
+  std::vector<Isoline> lines = compute(report, py::make_tuple(values, levels), [=](const Progress& progress) {
+    return in_one_step(progress, "isolines", [&] {
+      const Surface& surface = body->surface_for("isolines");
+      return step > 0 ? isolines(surface, given, level_multiples(given, step)) : isolines(surface, given, wanted);
+    });
+  });
+  py::list result;
+  for (Isoline& line : lines)
+    result.append(py::make_tuple(line.level, owned(std::move(line.points)), line.closed, line.length));
+  return result;
+}
+
+ToolPathSeed seed_of(const std::string& kind, const Doubles& numbers_of_seed, bool closed) {
+  if (kind == "boundary") return BoundarySeed{};
+  const std::span<const Vec3> points = vectors(numbers_of_seed);
+  if (kind == "plane") return PlaneSeed{points[0], points[1]};
+  if (kind == "curve") return CurveSeed{{points.begin(), points.end()}, closed};
+  return AutomaticSeed{};
+}
+
+/// @param seed    auto, boundary, plane or curve
+/// @param points  (n, 3): point and normal of the plane, points of the curve
+/// @param mask    empty, or one byte per row
+/// @param facing  empty, or a direction
+/// @return position, axis, travel, quaternion, pass, kind, arclength of the poses; begin, end, closed, kind, distance, length of
+/// the passes; measures and links
+py::tuple tool_path_of(const BodyPtr& body, double spacing, const std::string& seed, const Doubles& points, bool closed,
+                       const Bytes& mask, const Doubles& facing, double max_angle, const py::dict& options,
+                       const py::object& report) {
+  ToolPathOptions o{.spacing = spacing, .seed = seed_of(seed, points, closed)};
+  for (const std::uint8_t row : numbers(mask)) o.region.rows.push_back(row != 0);
+  if (const std::span<const double> d = numbers(facing); !d.empty())
+    o.region.facing = ToolPathRegion::Facing{{d[0], d[1], d[2]}, max_angle};
+  read(options, "step", o.step);
+  read(options, "chord_error", o.chord_error);
+  read(options, "tool_radius", o.tool_radius);
+  read(options, "clearance", o.clearance);
+  read(options, "max_link", o.max_link);
+  read(options, "one_way", o.one_way);
+  read(options, "threads", o.threads);
+  auto [path, measures] = compute(report, py::none(), [=](const Progress& progress) mutable {
+    o.progress = progress;
+    const Surface& surface = body->surface_for("a tool path");
+    ToolPath made = tool_path(surface, o);
+    const ToolPathMeasures measured = tool_path_measures(surface, made, o.region);
+    return std::pair(std::move(made), measured);
+  });
+  std::vector<Vec3> position, axis, travel;
+  std::vector<std::array<double, 4>> quaternion;
+  std::vector<Index> pass;
+  std::vector<std::uint8_t> kind;
+  std::vector<double> arclength;
+  for (const ToolPose& pose : path.poses) {
+    position.push_back(pose.position), axis.push_back(pose.axis), travel.push_back(pose.travel);
+    quaternion.push_back(pose.quaternion), pass.push_back(pose.pass), arclength.push_back(pose.arclength);
+    kind.push_back(static_cast<std::uint8_t>(pose.kind));
+  }
+  using namespace py::literals;
+  py::list passes;
+  for (const ToolPass& p : path.passes)
+    passes.append(py::make_tuple(p.begin, p.end, p.closed, static_cast<int>(p.origin), p.distance, p.length));
+  const py::ssize_t n = length(quaternion);
+  return py::make_tuple(
+      owned(std::move(position)), owned(std::move(axis)), owned(std::move(travel)),
+      owned<std::array<double, 4>, double>(std::move(quaternion), {n, 4}), owned(std::move(pass)),
+      owned(std::move(kind)), owned(std::move(arclength)), passes,
+      py::dict("area"_a = measures.area, "covered"_a = measures.covered, "largest_gap"_a = measures.largest_gap,
+               "double_covered"_a = measures.double_covered, "pass_length"_a = path.pass_length,
+               "link_length"_a = path.link_length, "surface_links"_a = path.surface_links,
+               "lifted_links"_a = path.lifted_links, "missing_links"_a = path.missing_links,
+               "uncovered_components"_a = path.uncovered_components));
+}
+
+}  // namespace
+
+void add_tool_paths(py::module_& module) {
+  module.def("isolines", &isolines_of);
+  module.def("tool_path", &tool_path_of);
+}
+
+}  // namespace ahm::python
