@@ -8,7 +8,6 @@
 #include <string>
 
 #include "ahm/error.hpp"
-#include "cholesky/blas.hpp"
 
 namespace ahm {
 namespace {
@@ -85,12 +84,10 @@ std::vector<std::int32_t> elimination_order(const SparseUpper& pattern, Ordering
   return ordering == Ordering::amd ? by_minimum_degree(pattern) : by_nested_dissection(pattern);
 }
 
-LinearAlgebraInfo linear_algebra_info() {
+std::string cholmod_version() {
   int version[3];
   cholmod_l_version(version);
-  const std::string blas = blas_name();
-  return {std::to_string(version[0]) + "." + std::to_string(version[1]) + "." + std::to_string(version[2]), blas,
-          blas_is_optimized(blas)};
+  return std::to_string(version[0]) + "." + std::to_string(version[1]) + "." + std::to_string(version[2]);
 }
 
 }  // namespace ahm

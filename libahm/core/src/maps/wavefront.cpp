@@ -106,7 +106,7 @@ struct Wavefront::Impl {
   Impl(const TangentGraph& graph, std::shared_ptr<const OneRings> one_rings, bool directions);
   Index add(const Source& source);
   void restart(std::span<const Seed> seeds);
-  void run(double radius, const std::stop_token& stop);
+  void run(double radius, const StopToken& stop);
   double next() const {
     return queue_.empty() ? std::numeric_limits<double>::infinity()
                           : (queue_.top().distance - longest_) * graph_.length_unit();
@@ -325,7 +325,7 @@ void Wavefront::Impl::restart(std::span<const Seed> seeds) {
     if (first_[vertex] == none) offer(vertex, entry.point, entry.distance, 0, {}, path, entry.focusing);
 }
 
-void Wavefront::Impl::run(double radius, const std::stop_token& stop) {
+void Wavefront::Impl::run(double radius, const StopToken& stop) {
   constexpr std::uint32_t between_looks = 4096;
   for (std::uint32_t taken = 0; !queue_.empty() && next() <= radius; ++taken) {
     if (taken % between_looks == 0 && stop.stop_requested()) throw Cancelled("cancelled during unfold");
@@ -612,7 +612,7 @@ Index Wavefront::points() const noexcept { return impl_->points_; }
 const TangentGraph& Wavefront::graph() const noexcept { return impl_->graph_; }
 bool Wavefront::has_directions() const noexcept { return impl_->directions_; }
 void Wavefront::restart(std::span<const Seed> seeds) { impl_->restart(seeds); }
-void Wavefront::run(double radius, const std::stop_token& stop) { impl_->run(radius, stop); }
+void Wavefront::run(double radius, const StopToken& stop) { impl_->run(radius, stop); }
 double Wavefront::next() const { return impl_->next(); }
 
 double Wavefront::distance(Vertex vertex) const {

@@ -36,7 +36,7 @@ struct SparseUpper {
 /// Fill-reducing ordering.
 enum class Ordering {
   amd,               ///< approximate minimum degree [ADD04]: the cheapest ordering, best for a few solves
-  nested_dissection  ///< METIS: slower to compute, smaller factors, best for many solves
+  nested_dissection  ///< METIS: slower to compute, smaller factors, best for many solves; without SuiteSparse the same as `amd`
 };
 
 struct SupernodalPattern;
@@ -103,8 +103,9 @@ class CholeskyFactor {
 
 /// The BLAS and CHOLMOD in use, for reports.
 struct LinearAlgebraInfo {
-  std::string cholmod;  ///< version
-  std::string blas;     ///< e.g. "OpenBLAS 0.3.21 ..." or the file name of the library
+  std::string cholmod;  ///< version, or "none (...)" with the orderings used instead
+  std::string
+      blas;  ///< e.g. "OpenBLAS 0.3.21 ...", the file name of the library, or "none (...)" with the loops used instead
   bool blas_optimized;  ///< false for the reference BLAS, which is several times slower
 };
 LinearAlgebraInfo linear_algebra_info();
