@@ -7,7 +7,7 @@ find_library(CHOLMOD_LAPACK lapack)
 find_library(CHOLMOD_BLAS blas)
 include(FindPackageHandleStandardArgs)
 find_package_handle_standard_args(CHOLMOD REQUIRED_VARS CHOLMOD_LIBRARY CHOLMOD_AMD CHOLMOD_LAPACK CHOLMOD_BLAS CHOLMOD_INCLUDE_DIR
-  REASON_FAILURE_MESSAGE "install SuiteSparse (Debian: libsuitesparse-dev)")
+  REASON_FAILURE_MESSAGE "install SuiteSparse (Debian: libsuitesparse-dev), or configure with -DAHM_BUILD_BENCHMARKS=OFF")
 if(CHOLMOD_FOUND AND NOT TARGET CHOLMOD::CHOLMOD)
   add_library(CHOLMOD::CHOLMOD UNKNOWN IMPORTED)
   set_target_properties(CHOLMOD::CHOLMOD PROPERTIES

@@ -1,15 +1,15 @@
-/* Prints the file that provides dgemm to CHOLMOD in this process. */
+/* Prints the configuration of OpenBLAS, or the file that provides dgemm in this process. */
 #define _GNU_SOURCE
-#include <cholmod.h>
 #include <dlfcn.h>
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 
+extern void dgemm_(void);
+
 int main(void) {
-  cholmod_common common;
-  cholmod_l_start(&common); /* keeps the linker from dropping CHOLMOD and the BLAS */
-  cholmod_l_finish(&common);
+  void (*volatile keep)(void) = dgemm_; /* keeps the linker from dropping the BLAS */
+  (void)keep;
   char* (*config)(void) = (char* (*)(void))dlsym(RTLD_DEFAULT, "openblas_get_config");
   Dl_info info;
   void* dgemm = dlsym(RTLD_DEFAULT, "dgemm_");

@@ -14,7 +14,7 @@ class Ahm(ConanFile):
     settings = "os", "compiler", "build_type", "arch"
     options = {"shared": [True, False], "fPIC": [True, False]}
     default_options = {"shared": False, "fPIC": True}
-    requires = "eigen/3.4.0", "nanoflann/1.5.2"  # CHOLMOD has no recipe everywhere: it is the system's
+    requires = "eigen/3.4.0", "nanoflann/1.5.2"  # LAPACK and BLAS are the system's
 
     def set_version(self):
         header = load(self, os.path.join(self.recipe_folder, "../libahm/core/include/ahm/version.hpp"))

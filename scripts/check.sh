@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Runs additional checks: the format of every source, the wording of pages and comments, clang-tidy, and the tests under the
-# sanitizers. Installs the packages that they require.
-#   check.sh [format|words|tidy|tidy-all|sanitizers|threads ...]     default: format, words, tidy and sanitizers
+# Runs additional checks: the format of every source, the wording of pages and comments, clang-tidy, the tests under the sanitizers,
+# and the libraries without their dependencies. Installs the packages that the checks require.
+#   check.sh [format|words|tidy|tidy-all|sanitizers|threads|lean ...]     default: format, words, tidy and sanitizers
 # tidy checks the files that differ from main, and the sources that include them. tidy-all checks all sources, except for the one
 # check that takes as long as all others.
 set -euo pipefail
@@ -82,11 +82,21 @@ threads() {
   build/tsan/bin/test_threads --gtest_brief=1
 }
 
+# The libraries without BLAS and threads.
+lean() {
+  echo "Without BLAS and threads (build/lean) ..."
+  cmake --preset lean >/dev/null
+  cmake --build --preset lean
+  for test in cholesky core trimesh; do
+    GTEST_FILTER="-CostOfGraph.*:LocalMaps.*:March.*:StreamedLogMap.*" build/lean/bin/test_$test --gtest_brief=1  # these take a minute
+  done
+}
+
 for check in "${@:-format words tidy sanitizers}"; do
   for one in $check; do
     case "$one" in
-      format | words | tidy | tidy-all | sanitizers | threads) ;;
-      *) echo "error: check.sh [format|words|tidy|tidy-all|sanitizers|threads ...]" >&2; exit 2 ;;
+      format | words | tidy | tidy-all | sanitizers | threads | lean) ;;
+      *) echo "error: check.sh [format|words|tidy|tidy-all|sanitizers|threads|lean ...]" >&2; exit 2 ;;
     esac
   done
 done

@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
 # Installs the Debian packages for a task. Prints nothing if all are installed.
-#   install_packages.sh [program|tests|checks|docs|packages|parity]
+#   install_packages.sh [program|tests|checks|docs|packages|parity|web]
 # program: the program without PCL, for scripts/demo.sh; tests (default): everything, including tests and benchmarks;
 # checks: tests, and the tools of clang; docs: tests, and the tools for the documentation site; packages: tests, and the
-# tools for Debian packages; parity: tests, and the libraries of scripts/parity.sh.
+# tools for Debian packages; parity: tests, and the libraries of scripts/parity.sh; web: the compiler for WebAssembly.
 set -euo pipefail
 
 program=(
   build-essential cmake ninja-build
-  libeigen3-dev libsuitesparse-dev libopenblas0-pthread       # linear algebra, with an optimized BLAS
+  libeigen3-dev libblas-dev liblapack-dev libopenblas0-pthread  # linear algebra, with an optimized BLAS
   libnanoflann-dev                                            # neighbor search
   libcli11-dev nlohmann-json3-dev libfmt-dev                  # the program
   libstb-dev libjs-three                                      # pictures
@@ -22,7 +22,7 @@ tests=(
   libflann-dev liblz4-dev                                     # neighbor search
   libpcl-dev                                                  # PCD files, voxel grid, outlier removal
   libminizip-dev                                              # .npz files
-  libgtest-dev libbenchmark-dev                               # tests and benchmarks
+  libgtest-dev libbenchmark-dev libsuitesparse-dev            # tests and benchmarks
   libcgal-dev python3-matplotlib                              # exact distances and plots of the experiments
   libpetsc-real-dev libopenmpi-dev openmpi-bin                # ahm-mpi: maps on many machines
   chromium chromium-driver python3-selenium                   # the viewer in a browser
@@ -32,6 +32,7 @@ checks=("${tests[@]}" clang libclang-rt-14-dev clang-format clang-tidy)
 debian=("${tests[@]}" dpkg-dev pkg-config file debootstrap)
 docs=("${tests[@]}" doxygen python3-sphinx python3-myst-parser furo python3-sphinx-copybutton linkchecker pngquant)
 parity=("${tests[@]}" python3-vtk9 python3-open3d python3-nibabel connectome-workbench python3-pandas python3-torch)
+web=(cmake ninja-build libeigen3-dev libnanoflann-dev clang-19 lld-19 wasi-libc libc++-19-dev-wasm32 libc++abi-19-dev-wasm32 libclang-rt-19-dev-wasm32)
 case "${1:-tests}" in
   program) packages=("${program[@]}") ;;
   tests) packages=("${tests[@]}") ;;
@@ -39,7 +40,8 @@ case "${1:-tests}" in
   docs) packages=("${docs[@]}") ;;
   packages) packages=("${debian[@]}") ;;
   parity) packages=("${parity[@]}") ;;
-  *) echo "error: install_packages.sh [program|tests|checks|docs|packages|parity]" >&2; exit 2 ;;
+  web) packages=("${web[@]}") ;;
+  *) echo "error: install_packages.sh [program|tests|checks|docs|packages|parity|web]" >&2; exit 2 ;;
 esac
 
 missing=()

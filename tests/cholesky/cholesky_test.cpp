@@ -83,7 +83,8 @@ TEST(FactorFront, IsEigensOfEverySmallFrontAndOfLargeOnes) {
   const OneBlasThread one_thread;
   std::vector<std::array<Offset, 2>> sizes{{150, 7}, {150, 150}, {301, 7}, {301, 150}, {500, 320}};
   ASSERT_TRUE(is_large_front(500, 320));
-  sizes.push_back({700, 45});  // several blocks of rows below
+  sizes.push_back({700, 45});   // several blocks of rows below
+  sizes.push_back({431, 129});  // one column more than a panel
   for (Offset rows = 1; rows <= 23; ++rows)
     for (Offset columns = 1; columns <= rows; ++columns) sizes.push_back({rows, columns});
   for (const auto& [rows, columns] : sizes) {

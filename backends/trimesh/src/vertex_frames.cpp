@@ -1,7 +1,6 @@
 #include "vertex_frames.hpp"
 
 #include <algorithm>
-#include <mutex>
 #include <numbers>
 
 #include "ahm/util/component_lengths.hpp"
@@ -240,7 +239,7 @@ VertexFrames find_frames(const TriangleMesh& mesh, const IntrinsicTriangulation&
   if (!edges.mirrored.empty()) frames.sense.assign(directed, 0);
   std::vector<Reference> references(n);
   CornerAngles angles(static_cast<std::size_t>(edges.size()));
-  std::mutex corrections_mutex;
+  detail::Mutex corrections_mutex;
   detail::for_each_index(n, threads, [&](std::size_t v) {
     references[v] = find_reference(mesh, input, triangulation, static_cast<Index>(v));
     const Fan fan(edges, triangulation, references[v].corner, angles);
@@ -248,7 +247,7 @@ VertexFrames find_frames(const TriangleMesh& mesh, const IntrinsicTriangulation&
     frames.start[v] = fan.start();
     frames.scale[v] = fan.find_scale(mesh.rounding(Vertex(static_cast<Index>(v))), corrections);
     if (corrections.empty()) return;
-    const std::scoped_lock lock(corrections_mutex);
+    const detail::Lock lock(corrections_mutex);
     frames.corrections.insert(frames.corrections.end(), corrections.begin(), corrections.end());
   });
   std::sort(frames.corrections.begin(), frames.corrections.end());

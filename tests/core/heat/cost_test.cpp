@@ -128,6 +128,9 @@ TEST(Cost, OfFactorsIsTheirMemoryUpToAFactorOfFour) {
 }
 
 TEST(Cost, IsProportionalToTheNumbersOfAnEntryAndBoundedForTwoBands) {
+#ifdef AHM_NO_THREADS
+  GTEST_SKIP() << "for builds with threads";
+#endif
   const Cost rotations = estimate_cost({10000, 2, TransportKind::rotation2}, Strategy::global),
              blocks = estimate_cost({10000, 2, TransportKind::block}, Strategy::global);
   EXPECT_NEAR(blocks.bytes / rotations.bytes, 5.0 / 3.0, 1e-12);  // 1 + 4 numbers per entry instead of 1 + 2

@@ -2,17 +2,17 @@
 /// Progress and cancellation of long calls.
 ///
 /// \code
-/// std::stop_source stop;                       // stop.request_stop() from any thread cancels
+/// ahm::StopSource stop;                        // stop.request_stop() from any thread cancels
 /// ahm::Progress progress{[](std::string_view stage, double f) { show(stage, f); }, stop.get_token()};
 /// \endcode
 #pragma once
 
 #include <functional>
-#include <stop_token>
 #include <string>
 #include <string_view>
 
 #include "ahm/error.hpp"
+#include "ahm/stop_token.hpp"
 
 namespace ahm {
 
@@ -22,7 +22,7 @@ struct Progress {
   std::function<void(std::string_view stage, double fraction)> report;
   /// Checked between stages and between the blocks of a stage. A sparse factorization is one block: it takes about a second
   /// for 200,000 vertices and cannot be interrupted.
-  std::stop_token stop;
+  StopToken stop;
 
   /// Reports progress, then throws `Cancelled` if a stop was requested.
   void step(std::string_view stage, double fraction) const {

@@ -9,7 +9,6 @@
 #include <mutex>
 #include <vector>
 
-#include "ahm/cholesky/cholesky.hpp"
 #include "ahm/error.hpp"
 #include "cholesky/memory_limits.hpp"
 
@@ -111,11 +110,6 @@ bool blas_is_optimized(const std::string& name) {
   for (const char* known : {"OpenBLAS", "openblas", "mkl", "blis", "atlas", "Accelerate"})
     if (name.find(known) != std::string::npos) return true;
   return false;
-}
-
-LinearAlgebraInfo linear_algebra_info() {
-  const std::string blas = blas_name();
-  return {blas, blas_is_optimized(blas)};
 }
 
 }  // namespace ahm

@@ -1,6 +1,6 @@
 /// \file
 /// The BLAS of the process: its functions, name and threads. BLAS functions may be called only while a `OneBlasThread` and a
-/// `BlasBuffer` exist.
+/// `BlasBuffer` exist. Without a BLAS, `OneBlasThread` does nothing and there are no buffers.
 #pragma once
 
 #include <string>
@@ -52,10 +52,10 @@ class BlasBuffer {
   bool counted_;
 };
 
-/// Configuration string of OpenBLAS, or the path of the library that provides `dgemm`.
+/// Configuration string of OpenBLAS, or the path of the library that provides `dgemm`; without a BLAS "none (loops of libahm)".
 std::string blas_name();
 
-/// Whether `name` (see `blas_name`) names an optimized BLAS.
+/// Whether `name` (see `blas_name`) names an optimized BLAS; without a BLAS true.
 bool blas_is_optimized(const std::string& name);
 
 }  // namespace ahm

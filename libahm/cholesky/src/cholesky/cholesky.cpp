@@ -123,9 +123,12 @@ std::vector<double> CholeskyFactor::checked_solve(const SparseUpper& matrix, std
 
 void CholeskyFactor::solve(std::span<double> X, Offset columns, unsigned threads) const {
   if (columns <= max_narrow_columns) return narrow_solve(factor(), X, columns, pattern_->groups.get(), threads);
-  if (nonzeros() <= max_block_entries) return block_solve(factor(), X, columns);
-  const OneBlasThread one_thread;
-  blas_solve(factor(), X, columns);
+  block_solve(factor(), X, columns);
+}
+
+LinearAlgebraInfo linear_algebra_info() {
+  const std::string blas = blas_name();
+  return {blas, blas_is_optimized(blas)};
 }
 
 SupernodalFactor CholeskyFactor::factor() const { return pattern_->factor(is_complex_, values_.get()); }

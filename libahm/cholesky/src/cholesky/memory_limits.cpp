@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <string>
@@ -31,7 +32,8 @@ double smallest_limit(const std::filesystem::path& mount, const std::filesystem:
 
 }  // namespace
 
-double control_group_limit(const std::filesystem::path& groups, const std::filesystem::path& mounts) {
+double control_group_limit(const std::string& groups, const std::string& mounts) {
+  const std::filesystem::path folder(mounts);
   double least = infinity;
   std::ifstream lines(groups);
   for (std::string line; std::getline(lines, line);) {
@@ -42,11 +44,16 @@ double control_group_limit(const std::filesystem::path& groups, const std::files
     controllers.append(line, first + 1, second - first - 1).push_back(',');
     if (controllers == ",,")
       for (const char* mount : {"", "unified"})
-        least = std::min(least, smallest_limit(mounts / mount, group, "memory.max"));
+        least = std::min(least, smallest_limit(folder / mount, group, "memory.max"));
     else if (controllers.find(",memory,") != std::string::npos)
-      least = std::min(least, smallest_limit(mounts / "memory", group, "memory.limit_in_bytes"));
+      least = std::min(least, smallest_limit(folder / "memory", group, "memory.limit_in_bytes"));
   }
   return least;
+}
+
+double physical_memory() {
+  const long pages = sysconf(_SC_PHYS_PAGES), size = sysconf(_SC_PAGE_SIZE);
+  return pages > 0 && size > 0 ? static_cast<double>(pages) * static_cast<double>(size) : infinity;
 }
 
 double resource_limit() {

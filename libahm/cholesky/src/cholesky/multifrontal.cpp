@@ -9,133 +9,12 @@
 #include <vector>
 
 #include "ahm/util/parallel.hpp"
-#include "cholesky/blas.hpp"
 #include "cholesky/flush_subnormals.hpp"
-#include "cholesky/supernode_kernels.hpp"
+#include "cholesky/front_kernels.hpp"
+#include "cholesky/large_fronts.hpp"
 
 namespace ahm {
 namespace {
-
-/// Doubles per tile column: two vectors of four.
-constexpr Offset tile_rows = 8;
-
-/// Computes sum_k L_rk conj(L_ck) for a tile of R * 4 / W rows r and J columns c.
-template <int W, int R, int J>
-struct Tile {
-  Four straight[J][R] = {}, crossed[(J - 1) * (W - 1) + 1][(R - 1) * (W - 1) + 1] = {};  // crossed: unused if W is 1
-
-  /// @param row, column  entries of the first column of L in the tile's first row r and first column c
-  [[gnu::always_inline]] Tile(const double* row, const double* column, Offset stride, Offset count) {
-    for (Offset k = 0; k < count; ++k, row += stride, column += stride) {
-      const Four* left = four(row);
-#pragma GCC unroll 4
-      for (int c = 0; c < J; ++c)
-#pragma GCC unroll 2
-        for (int r = 0; r < R; ++r) {
-          straight[c][r] += left[r] * column[c * W];
-          if constexpr (W == 2) crossed[c][r] += left[r] * column[c * W + 1];
-        }
-    }
-  }
-  [[gnu::always_inline]] void get(int column, int r, Four* sum) const {
-    *sum = straight[column][r];
-    if constexpr (W == 2)
-      *sum += Four{1, -1, 1, -1} * __builtin_shufflevector(crossed[column][r], crossed[column][r], 1, 0, 3, 2);
-  }
-};
-
-/// Applies the eliminated columns to J columns of the front, from the row of the first diagonal entry (`begin`) on.
-template <int W, int J, bool Own>
-struct ColumnBlock {
-  const double* L;
-  Offset rows, eliminated;  ///< doubles per column; number of eliminated columns
-  double* target[J];        ///< output columns, shifted so that index 0 is row 0 of the front
-
-  /// Own: subtracts the product from the supernode's own columns. Otherwise: stores the negative product in the update matrix.
-  /// @param skipped  leading doubles of the tile that are not written
-  template <int R>
-  [[gnu::always_inline]] void tile(Offset begin, Offset r, Offset skipped = 0) const {
-    const Tile<W, R, J> tile(L + r, L + begin, rows, eliminated);
-#pragma GCC unroll 4
-    for (int c = 0; c < J; ++c)
-#pragma GCC unroll 2
-      for (int v = 0; v < R; ++v) {
-        Four sum;
-        tile.get(c, v, &sum);
-        double* out = target[c] + r + 4 * v;
-        if (skipped == 0) {
-          Four* all = four(out);
-          *all = Own ? *all - sum : -sum;
-        } else {
-          for (Offset k = skipped; k < 4; ++k) out[k] = Own ? out[k] - sum[k] : -sum[k];
-        }
-      }
-  }
-  [[gnu::always_inline]] void all(Offset begin) const {
-    Offset r = begin;
-    for (; r + tile_rows <= rows; r += tile_rows) tile<2>(begin, r);
-    for (; r + 4 <= rows; r += 4) tile<1>(begin, r);
-    if (r == rows) return;
-    if (rows >= 4) return tile<1>(begin, rows - 4, r - (rows - 4));
-    for (; r < rows; r += W)
-      for (int c = 0; c < J; ++c) one(begin, r, c);
-  }
-
- private:
-  /// Computes one entry, for fronts with less than four doubles per column.
-  [[gnu::always_inline]] void one(Offset begin, Offset r, int c) const {
-    double re = 0, im = 0;
-    for (Offset k = 0; k < eliminated; ++k) {
-      const double *a = L + k * rows + r, *b = L + k * rows + begin + c * W;
-      re += a[0] * b[0];
-      if constexpr (W == 2) {
-        re += a[1] * b[1];
-        im += a[1] * b[0] - a[0] * b[1];
-      }
-    }
-    double* out = target[c] + r;
-    out[0] = Own ? out[0] - re : -re;
-    if constexpr (W == 2) out[1] = Own ? out[1] - im : -im;
-  }
-};
-
-/// Factors the columns j to j + J - 1 among themselves, after all earlier columns have been eliminated from them.
-/// @return number of columns before the first pivot that is not positive and finite
-template <int W, int J>
-[[gnu::always_inline]] inline int finish_columns(double* L, Offset rows, Offset j) {
-  double* column[J];
-  for (int c = 0; c < J; ++c) column[c] = L + (j + c) * rows;
-  for (int c = 0; c < J; ++c) {
-    const double pivot = column[c][(j + c) * W];
-    if (!(pivot > 0) || !std::isfinite(pivot)) return c;
-    const double root = std::sqrt(pivot), inverse = 1 / root;
-    column[c][(j + c) * W] = root;
-    if constexpr (W == 2) column[c][(j + c) * W + 1] = 0;
-    for (Offset r = (j + c + 1) * W; r < rows; ++r) column[c][r] *= inverse;
-    for (int next = c + 1; next < J; ++next) {
-      const double re = column[c][(j + next) * W];
-      if constexpr (W == 1) {
-        for (Offset r = (j + next) * W; r < rows; ++r) column[next][r] -= column[c][r] * re;
-      } else {
-        const double im = column[c][(j + next) * W + 1];
-        for (Offset r = (j + next) * W; r < rows; r += 2) {
-          const double x = column[c][r], y = column[c][r + 1];
-          column[next][r] -= x * re + y * im;
-          column[next][r + 1] -= y * re - x * im;
-        }
-      }
-    }
-  }
-  return J;
-}
-
-template <int W, int J>
-[[gnu::always_inline]] inline int own_columns(double* L, Offset rows, Offset j) {
-  ColumnBlock<W, J, true> block{L, rows, j, {}};
-  for (int c = 0; c < J; ++c) block.target[c] = L + (j + c) * rows;
-  block.all(j * W);
-  return finish_columns<W, J>(L, rows, j);
-}
 
 template <int W, int J>
 [[gnu::always_inline]] inline void columns_below(const double* L, Offset rows, Offset columns, Offset c,
@@ -143,24 +22,14 @@ template <int W, int J>
   const Offset below = rows - columns * W;
   ColumnBlock<W, J, false> block{L, rows, columns, {}};
   for (int a = 0; a < J; ++a) block.target[a] = update + (c + a) * below - columns * W;
-  block.all((columns + c) * W);
+  block.rows((columns + c) * W, (columns + c) * W, rows);
 }
-
-/// Columns per tile: as many as fit into the registers.
-template <int W>
-constexpr int at_once = W == 1 ? 4 : 2;
 
 /// @param rows  doubles per column
 template <int W>
 [[gnu::always_inline]] inline Offset factor_small(double* L, Offset rows, Offset columns, double* update) {
-  constexpr int J = at_once<W>;
-  for (Offset j = 0; j < columns;) {
-    const bool many = j + J <= columns;
-    const int wanted = many ? J : 1;
-    const int good = many ? own_columns<W, J>(L, rows, j) : own_columns<W, 1>(L, rows, j);
-    j += good;
-    if (good < wanted) return j;
-  }
+  if (const Offset good = eliminate<W, true>(L, rows, columns, 0, rows); good < columns) return good;
+  constexpr int J = columns_per_tile<W>;
   const Offset below = rows / W - columns;
   Offset c = 0;
   for (; c + J <= below; c += J) columns_below<W, J>(L, rows, columns, c, update);
@@ -179,48 +48,12 @@ Offset factor_small_anywhere(double* L, Offset rows, Offset columns, double* upd
   return factor_small<W>(L, rows, columns, update);
 }
 
-/// Rows below the supernode per task of the triangular solve, and columns per task of the update.
-constexpr Offset below_at_once = 128;
-
-template <int W>
-Offset factor_large(double* L, Offset all_rows, Offset all_columns, double* update, unsigned threads) {
-  const int rows = static_cast<int>(all_rows), columns = static_cast<int>(all_columns), below = rows - columns;
-  const double one[2] = {1, 0}, minus[2] = {-1, 0}, zero[2] = {0, 0};
-  int failed = 0;
-  {
-    const BlasBuffer buffer;
-    (W == 1 ? dpotrf_ : zpotrf_)("L", &columns, L, &rows, &failed);
-  }
-  if (failed > 0) return failed - 1;
-  for (Offset j = 0; j < all_columns; ++j)  // OpenBLAS does not report NaN pivots
-    if (!std::isfinite(L[j * (all_rows + 1) * W])) return j;
-  double* L_below = L + all_columns * W;
-  detail::parallel_chunks(below, below_at_once, threads, [&](Offset begin, Offset end) {
-    const int some = static_cast<int>(end - begin);
-    const FlushSubnormals flush;
-    const BlasBuffer buffer;
-    (W == 1 ? dtrsm_ : ztrsm_)("R", "L", "C", "N", &some, &columns, one, L, &rows, L_below + begin * W, &rows);
-  });
-  detail::parallel_chunks(below, below_at_once, threads, [&](Offset begin, Offset end) {
-    const int some = static_cast<int>(end - begin), rest = below - static_cast<int>(end);
-    const double *own = L_below + begin * W, *under = L_below + end * W;
-    double* out = update + begin * below * W;
-    const FlushSubnormals flush;
-    const BlasBuffer buffer;
-    (W == 1 ? dsyrk_ : zherk_)("L", "N", &some, &columns, minus, own, &rows, zero, out + begin * W, &below);
-    if (rest > 0)
-      (W == 1 ? dgemm_ : zgemm_)("N", "C", &rest, &some, &columns, minus, under, &rows, own, &rows, zero, out + end * W,
-                                 &below);
-  });
-  return all_columns;
-}
-
 }  // namespace
 
 template <int W>
 Offset factor_front(double* L, Offset rows, Offset columns, double* update, unsigned threads) {
   const FlushSubnormals flush;
-  if (is_large_front(rows, columns)) return factor_large<W>(L, rows, columns, update, threads);
+  if (is_large_front(rows, columns)) return factor_large_front<W>(L, rows, columns, update, threads);
 #ifdef __x86_64__
   static const bool fast = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
   if (fast) return factor_small_avx2<W>(L, rows * W, columns, update);

@@ -7,13 +7,13 @@
 
 namespace ahm {
 
-/// Whether a front is large enough to be factored by the BLAS.
+/// Whether a front is large enough for `factor_large_front`.
 constexpr bool is_large_front(Offset rows, Offset columns) { return rows * rows * columns > Offset{1} << 24; }
 
 /// Factors the columns of a supernode in place, L <- chol(L), and computes its update matrix, update <- -L_below L_below^H. The first
 /// `columns` rows of L are the supernode's own rows, the others are L_below. Real (W = 1) or complex (W = 2).
 ///
-/// Large fronts are factored by LAPACK. For small fronts the BLAS spends its time on calls and copies, so they have kernels of our own.
+/// Large fronts are factored by `factor_large_front`. In small fronts its copies, and the calls of a BLAS, would cost more than they save.
 /// @param L       rows x columns, column major; its upper triangle is left undefined
 /// @param update  (rows - columns)^2, column major; only the lower triangle is defined
 /// @param threads  threads that share a large front; the result has the same bits for any number

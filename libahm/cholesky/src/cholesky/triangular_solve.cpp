@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "ahm/util/parallel.hpp"
-#include "cholesky/blas.hpp"
 #include "cholesky/supernode_kernels.hpp"
 
 namespace ahm {
+namespace {
 
 /// Right-hand sides in elimination order, column major; real (W = 1) or complex (W = 2).
 template <int W>
@@ -46,8 +46,6 @@ class PermutedColumns {
   const SupernodalFactor& L_;
   std::unique_ptr<double[]> x_;
 };
-
-namespace {
 
 /// Solves for K columns, real (W = 1) or complex (W = 2).
 template <int W, int K>
@@ -323,88 +321,6 @@ void block_solve(const SupernodalFactor& L, std::span<double> X, Offset columns)
   if (__builtin_cpu_supports("avx2")) return solve_by_fours(L, X, columns);
 #endif
   solve_by_lanes<2>(L, X, columns);
-}
-
-namespace {
-
-/// Columns per block. With more columns the BLAS is not faster, and the block needs more memory.
-constexpr Offset at_once = 64;
-
-template <int W>
-class BlasSolve {
- public:
-  BlasSolve(const SupernodalFactor& L, Offset columns)
-      : L_(L),
-        x_(L, columns),
-        below_(static_cast<std::size_t>(L.max_rows() * columns * W)),
-        ld_(static_cast<int>(L.size)) {}
-
-  void solve(std::span<double> X, Offset columns) {
-    columns_ = static_cast<int>(columns);
-    x_.template permute<true>(X, columns);
-    for (Offset s = 0; s < L_.supernodes(); ++s) forward(Supernode<W>(L_, s));
-    for (Offset s = L_.supernodes(); s-- > 0;) backward(Supernode<W>(L_, s));
-    x_.template permute<false>(X, columns);
-  }
-
- private:
-  /// y_own <- L_own^-1 y_own (how = "N") or L_own^-H y_own (how = "C").
-  void divide(const Supernode<W>& s, const char* how) {
-    const int own = static_cast<int>(s.columns), rows = static_cast<int>(s.rows);
-    (W == 1 ? dtrsm_ : ztrsm_)("L", "L", how, "N", &own, &columns_, one, s.values, &rows, x_.at(0, s.first), &ld_);
-  }
-
-  /// Calls visit(entry of y, entry of `below_`) for each row below the supernode.
-  template <class Visit>
-  void for_each_row_below(const Supernode<W>& s, const Visit& visit) {
-    const Offset below = s.rows - s.columns;
-    for (int c = 0; c < columns_; ++c)
-      for (Offset r = 0; r < below; ++r)
-        for (int w = 0; w < W; ++w) visit(x_.at(c, s.index[s.columns + r])[w], below_[(c * below + r) * W + w]);
-  }
-
-  void forward(const Supernode<W>& s) {
-    if (x_.is_zero(s, columns_)) return;
-    divide(s, "N");
-    const int own = static_cast<int>(s.columns), rows = static_cast<int>(s.rows), below = rows - own;
-    if (below == 0) return;
-    (W == 1 ? dgemm_ : zgemm_)("N", "N", &below, &columns_, &own, one, s.at(s.columns, 0), &rows, x_.at(0, s.first),
-                               &ld_, zero, below_.data(), &below);
-    for_each_row_below(s, [](double& y, double product) { y -= product; });
-  }
-
-  void backward(const Supernode<W>& s) {
-    const int own = static_cast<int>(s.columns), rows = static_cast<int>(s.rows), below = rows - own;
-    if (below > 0) {
-      for_each_row_below(s, [](double y, double& gathered) { gathered = y; });
-      (W == 1 ? dgemm_ : zgemm_)("C", "N", &own, &columns_, &below, minus, s.at(s.columns, 0), &rows, below_.data(),
-                                 &below, one, x_.at(0, s.first), &ld_);
-    }
-    divide(s, "C");
-  }
-
-  static constexpr double one[2] = {1, 0}, minus[2] = {-1, 0}, zero[2] = {0, 0};
-  const SupernodalFactor& L_;
-  PermutedColumns<W> x_;
-  std::vector<double> below_;
-  int ld_, columns_ = 0;
-};
-
-template <int W>
-void solve_by_blas(const SupernodalFactor& L, std::span<double> X, Offset columns) {
-  BlasSolve<W> solver(L, std::min(columns, at_once));
-  const Offset size = L.size * W;
-  const BlasBuffer buffer;
-  for (Offset c = 0; c < columns; c += at_once) {
-    const Offset count = std::min(at_once, columns - c);
-    solver.solve(X.subspan(c * size, count * size), count);
-  }
-}
-
-}  // namespace
-
-void blas_solve(const SupernodalFactor& L, std::span<double> X, Offset columns) {
-  (L.is_complex ? solve_by_blas<2> : solve_by_blas<1>)(L, X, columns);
 }
 
 }  // namespace ahm

@@ -1,8 +1,8 @@
 /// \file
 /// Triangular solves with a supernodal factor.
 ///
-/// The factors of libahm have a small supernode for every few vertices. For few right-hand sides, four BLAS calls per supernode cost
-/// more than reading the factor. For more than `max_narrow_columns` columns the BLAS is faster.
+/// The factors of libahm have a small supernode for every few vertices. Calls of the BLAS for each supernode cost more than reading the
+/// factor, so all solves have loops of our own.
 #pragma once
 
 #include <span>
@@ -20,16 +20,8 @@ struct SolveGroups;
 void narrow_solve(const SupernodalFactor& L, std::span<double> X, Offset columns, const SolveGroups* groups = nullptr,
                   unsigned threads = 1);
 
-/// Largest number of entries of a factor for `block_solve`. Such factors fit into the cache of a core, and their supernodes are so
-/// small that the BLAS spends its time on calls and copies: `block_solve` takes 0.4 to 0.9 of the time of `blas_solve`. For larger
-/// complex factors the BLAS is faster.
-inline constexpr Offset max_block_entries = 1 << 19;
-
 /// X <- K^-1 X for any number of columns, column major; complex vectors as interleaved pairs. The result for a column does not depend
 /// on the other columns. Skips supernodes whose rows are zero in the forward solve.
 void block_solve(const SupernodalFactor& L, std::span<double> X, Offset columns);
-
-/// X <- K^-1 X for any number of columns, column major; complex vectors as interleaved pairs. Calls the BLAS for each supernode.
-void blas_solve(const SupernodalFactor& L, std::span<double> X, Offset columns);
 
 }  // namespace ahm

@@ -1,7 +1,5 @@
 #include "maps/cost.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -258,10 +256,8 @@ Strategy choose_strategy(const GraphSize& size, const HeatOptions& options) {
 }
 
 double machine_memory() {
-  const long pages = sysconf(_SC_PHYS_PAGES), size = sysconf(_SC_PAGE_SIZE);
   const double limit = std::min(resource_limit(), control_group_limit("/proc/self/cgroup", "/sys/fs/cgroup"));
-  const double machine = pages > 0 && size > 0 ? static_cast<double>(pages) * static_cast<double>(size) : INFINITY;
-  const double least = std::min(machine, limit);
+  const double least = std::min(physical_memory(), limit);
   return std::isinf(least) ? 0 : least;
 }
 

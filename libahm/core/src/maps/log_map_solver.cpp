@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <mutex>
 #include <optional>
 #include <string>
 
@@ -113,7 +112,7 @@ std::vector<LogMap> LogMapSolver::solve(std::span<const Source> sources, const M
 
   return detail::with_memory_check("solving for log maps", [&] {
     std::vector<std::optional<LogMap>> maps(sources.size());
-    std::mutex report_mutex;
+    detail::Mutex report_mutex;
     Offset done = 0;
     const Progress progress = settings.progress;
     progress.step("solve", 0.0);
@@ -128,7 +127,7 @@ std::vector<LogMap> LogMapSolver::solve(std::span<const Source> sources, const M
       } else {
         maps[first] = impl_->march.solve(sources[first], settings, threads_per_block);
       }
-      std::scoped_lock lock(report_mutex);
+      const detail::Lock lock(report_mutex);
       done += end - begin;
       progress.step("solve", static_cast<double>(done) / static_cast<double>(count));
     });

@@ -6,7 +6,6 @@
 #include <cstdlib>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <new>
 #include <optional>
 #include <span>
@@ -144,19 +143,19 @@ void share_groups(const std::vector<std::vector<Index>>& groups, unsigned thread
                   const Make& make, const Work& work) {
   using Worker = decltype(make());
   const OneBlasThread one_thread;
-  std::mutex mutex;
+  detail::Mutex mutex;
   std::vector<Worker> idle;
   Offset done = 0;
   const Offset at_once = groups.size() < 64 ? 1 : 8;
   detail::parallel_chunks(static_cast<Offset>(groups.size()), at_once, threads, [&](Offset begin, Offset end) {
     Worker worker;
     {
-      std::scoped_lock lock(mutex);
+      const detail::Lock lock(mutex);
       if (!idle.empty()) worker = std::move(idle.back()), idle.pop_back();
     }
     if (!worker) worker = make();
     for (Offset g = begin; g < end; ++g) work(*worker, groups[static_cast<std::size_t>(g)]);
-    std::scoped_lock lock(mutex);
+    const detail::Lock lock(mutex);
     idle.push_back(std::move(worker));
     done += end - begin;
     progress.step("solve", static_cast<double>(done) / static_cast<double>(groups.size()));

@@ -131,8 +131,7 @@ std::optional<double> reliable_distance(std::span<const double> distances, std::
   return reliable;
 }
 
-ReferenceFront::ReferenceFront(const TangentGraph& graph, const Source& source, double radius,
-                               const std::stop_token& stop) {
+ReferenceFront::ReferenceFront(const TangentGraph& graph, const Source& source, double radius, const StopToken& stop) {
   if (graph.is_delaunay()) return;
   front_.emplace(graph, Wavefront::one_rings_within(graph, radius), true);
   front_->add(source);

@@ -108,7 +108,7 @@ struct Wavefront::Impl {
   void clear();
   void forget();
   void restart(std::span<const Seed> seeds);
-  void run(double radius, const std::stop_token& stop);
+  void run(double radius, const StopToken& stop);
   std::vector<Vertex> reached() const;
   double next() const {
     return queue_.empty() ? std::numeric_limits<double>::infinity()
@@ -358,7 +358,7 @@ void Wavefront::Impl::restart(std::span<const Seed> seeds) {
     if (first_[vertex] == none) offer(vertex, entry.point, entry.distance, 0, {}, path, entry.focusing);
 }
 
-void Wavefront::Impl::run(double radius, const std::stop_token& stop) {
+void Wavefront::Impl::run(double radius, const StopToken& stop) {
   constexpr std::uint32_t between_looks = 4096;
   limit_ = radius / graph_.length_unit();
   longest_within_ = longest_;
@@ -650,7 +650,7 @@ const TangentGraph& Wavefront::graph() const noexcept { return impl_->graph_; }
 bool Wavefront::has_directions() const noexcept { return impl_->directions_; }
 void Wavefront::clear() { impl_->clear(); }
 void Wavefront::restart(std::span<const Seed> seeds) { impl_->restart(seeds); }
-void Wavefront::run(double radius, const std::stop_token& stop) { impl_->run(radius, stop); }
+void Wavefront::run(double radius, const StopToken& stop) { impl_->run(radius, stop); }
 double Wavefront::next() const { return impl_->next(); }
 std::vector<Vertex> Wavefront::reached() const { return impl_->reached(); }
 

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <mutex>
 #include <numbers>
 #include <numeric>
 #include <optional>
@@ -470,7 +469,7 @@ std::vector<GeodesicPath> geodesic_paths(const PolyhedralSurface& surface, std::
                                          const Progress& progress, unsigned threads) {
   const std::vector<std::vector<std::size_t>> groups = group_by_start(pairs);
   std::vector<GeodesicPath> paths(pairs.size());
-  std::mutex reporting;
+  detail::Mutex reporting;
   std::size_t done = 0;
   detail::parallel_chunks(static_cast<Offset>(groups.size()), 1, threads, [&](Offset g, Offset) {
     const std::vector<std::size_t>& group = groups[static_cast<std::size_t>(g)];
@@ -480,7 +479,7 @@ std::vector<GeodesicPath> geodesic_paths(const PolyhedralSurface& surface, std::
     for (std::size_t k : group) options.targets.push_back(pairs[k][1]);
     const ExactMap map = exact_map(surface, pairs[group.front()][0], options);
     for (std::size_t t = 0; t < group.size(); ++t) paths[group[t]] = path_to_target(surface, map, t);
-    const std::scoped_lock lock(reporting);
+    const detail::Lock lock(reporting);
     progress.step("paths", static_cast<double>(++done) / static_cast<double>(groups.size()));
   });
   return paths;

@@ -105,7 +105,7 @@ class CholeskyFactor {
 
 /// The BLAS in use, for reports.
 struct LinearAlgebraInfo {
-  std::string blas;     ///< e.g. "OpenBLAS 0.3.21 ..." or the file name of the library
+  std::string blas;     ///< e.g. "OpenBLAS 0.3.21 ...", the file name of the library, or "none (...)"
   bool blas_optimized;  ///< false for the reference BLAS, which is several times slower
 };
 LinearAlgebraInfo linear_algebra_info();

@@ -11,12 +11,12 @@
 #include <limits>
 #include <optional>
 #include <span>
-#include <stop_token>
 #include <vector>
 
 #include "ahm/graph/tangent_graph.hpp"
 #include "ahm/maps/log_map.hpp"
 #include "ahm/maps/wavefront.hpp"
+#include "ahm/stop_token.hpp"
 
 namespace ahm {
 
@@ -53,7 +53,7 @@ class ReferenceFront {
   /// @param radius  radius of the map, world units
   /// @throws Cancelled
   ReferenceFront(const TangentGraph& graph, const Source& source,
-                 double radius = std::numeric_limits<double>::infinity(), const std::stop_token& stop = {});
+                 double radius = std::numeric_limits<double>::infinity(), const StopToken& stop = {});
   /// The front; null on Delaunay triangulations, where maps by heat contain the result of a front (`LogMap::directions`).
   const Wavefront* get() const noexcept { return front_ ? &*front_ : nullptr; }
 

@@ -17,11 +17,11 @@
 #include <memory>
 #include <queue>
 #include <span>
-#include <stop_token>
 #include <vector>
 
 #include "ahm/graph/tangent_graph.hpp"
 #include "ahm/maps/source.hpp"
+#include "ahm/stop_token.hpp"
 
 namespace ahm {
 
@@ -94,7 +94,7 @@ class Wavefront {
   /// Advances the front until all vertices nearer than `radius` (world units) have their final distance. Vertices beyond may have no
   /// distance, or one that is too long. May be called again after `add`; then only vertices nearer to the new points change.
   /// @throws Cancelled when a stop is requested
-  void run(double radius = std::numeric_limits<double>::infinity(), const std::stop_token& stop = {});
+  void run(double radius = std::numeric_limits<double>::infinity(), const StopToken& stop = {});
   /// All distances below this one are final, world units; infinity if the front has visited all vertices it can reach.
   double next() const;
 

@@ -5,20 +5,55 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
-#include <mutex>
-#include <system_error>
-#include <thread>
 #include <vector>
 
 #include "ahm/types.hpp"
+#include "ahm/util/mutex.hpp"
+
+#ifndef AHM_NO_THREADS
+#include <system_error>
+#include <thread>
+#endif
 
 namespace ahm::detail {
 
-/// The number of threads to use.
+#ifdef AHM_NO_THREADS
+inline unsigned thread_count(unsigned) { return 1; }
+
+/// Calls work().
+template <class Work>
+void on_threads(Offset, const Work& work) {
+  work();
+}
+#else
+/// The number of threads to use. Builds without threads have one.
 /// @param requested  0: one per core
 inline unsigned thread_count(unsigned requested) {
   return requested > 0 ? requested : std::max(1u, std::thread::hardware_concurrency());
 }
+
+/// Threads that are joined at the end. Older standard libraries have no std::jthread.
+struct ThreadPool {
+  ThreadPool() = default;
+  ThreadPool(const ThreadPool&) = delete;
+  ThreadPool& operator=(const ThreadPool&) = delete;
+  ~ThreadPool() {
+    for (std::thread& thread : threads) thread.join();
+  }
+  std::vector<std::thread> threads;
+};
+
+/// Calls work() on `count` threads, the calling one included; on fewer if the system cannot start more.
+template <class Work>
+void on_threads(Offset count, const Work& work) {
+  ThreadPool pool;
+  try {
+    for (Offset t = 1; t < count; ++t) pool.threads.emplace_back(work);
+  } catch (const std::system_error&) {
+  }
+  work();
+}
+#endif
 
 /// Calls body(begin, end) on consecutive chunks of [0, n), each at most `chunk` long. Chunks do not depend on the number of threads.
 /// An exception stops the loop. If several chunks throw, the exception of the first chunk is rethrown, for any number of threads.
@@ -28,12 +63,12 @@ void parallel_chunks(Offset n, Offset chunk, unsigned threads, const Body& body)
   std::atomic<Offset> next{0};
   Offset failed = chunks;
   std::exception_ptr error;
-  std::mutex error_mutex;
-  auto work = [&] {
+  Mutex error_mutex;
+  const auto work = [&] {
     for (Offset c; (c = next.fetch_add(1)) < chunks;) try {
         body(c * chunk, std::min(n, (c + 1) * chunk));
       } catch (...) {
-        std::scoped_lock lock(error_mutex);
+        const Lock lock(error_mutex);
         if (c < failed) {
           failed = c;
           error = std::current_exception();
@@ -41,16 +76,7 @@ void parallel_chunks(Offset n, Offset chunk, unsigned threads, const Body& body)
         next = chunks;
       }
   };
-  const auto workers = std::min<Offset>(thread_count(threads), chunks);
-  {
-    std::vector<std::jthread> pool;
-    try {
-      for (Offset t = 1; t < workers; ++t) pool.emplace_back(work);
-    } catch (const std::system_error&) {
-      // The system cannot start more threads. The existing ones and the calling thread do the work.
-    }
-    work();
-  }
+  on_threads(std::min<Offset>(thread_count(threads), chunks), work);
   if (error) std::rethrow_exception(error);
 }
 

@@ -1,0 +1,46 @@
+#!/usr/bin/env bash
+# Builds the npm package in build/web/package: libahm as WebAssembly, with types. Then runs its tests in Node, on the packed package.
+# If build/release/bin/ahm exists, the tests compare the maps with its maps.
+#   web.sh
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+command -v npm >/dev/null || { echo "error: npm was not found; install Node 20 or later (Debian 12: nodejs and npm have version 18)" >&2; exit 1; }
+scripts/install_packages.sh web
+mkdir -p build/web/include
+cp /usr/include/nanoflann.hpp build/web/include/  # the compiler does not search the folder of the system's headers
+
+# Debian's libc++ for WebAssembly has no exceptions. Those of emscripten's package have the same ABI; its other parts are not used.
+runtime=build/web/emscripten
+if [ ! -e "$runtime/libunwind-except.a" ]; then
+  echo "Downloading the package emscripten (110 MB) for its exception library ..."
+  mkdir -p "$runtime/download"
+  (cd "$runtime/download" && apt-get download emscripten)
+  for name in libc++abi-except.a libunwind-except.a; do
+    dpkg-deb --fsys-tarfile "$runtime"/download/emscripten_*.deb |
+      tar -xO "./usr/share/emscripten/cache/sysroot/lib/wasm32-emscripten/$name" >"$runtime/$name.part"
+    mv "$runtime/$name.part" "$runtime/$name"
+  done
+  rm -r "$runtime/download"
+fi
+
+echo "Building (build/web) ..."
+cmake -S . -B build/web -G Ninja -DCMAKE_TOOLCHAIN_FILE=cmake/wasm32-wasi.cmake -DCMAKE_BUILD_TYPE=Release -DAHM_UNITY_BUILD=ON \
+  -DAHM_WITH_BLAS=OFF -DAHM_WITH_THREADS=OFF -DAHM_WITH_FLANN=OFF -DAHM_WITH_PCL=OFF -DAHM_BUILD_APPS=OFF \
+  -DAHM_BUILD_PYTHON=OFF -DAHM_BUILD_EXAMPLES=OFF -DAHM_BUILD_TESTS=OFF -DAHM_INSTALL=OFF \
+  -DCMAKE_CXX_STANDARD_INCLUDE_DIRECTORIES="$PWD/build/web/include" \
+  -DAHM_WASM_EXCEPTIONS="$PWD/$runtime/libc++abi-except.a;$PWD/$runtime/libunwind-except.a" >/dev/null
+cmake --build build/web --target ahm_web
+
+rm -rf build/web/package
+cp -r web/package build/web/package
+cp build/web/libahm.wasm LICENSE build/web/package/
+echo "Packing and testing ..."
+rm -rf build/web/installed && mkdir build/web/installed
+(cd build/web/package && npm pack --silent --pack-destination ..)
+(cd build/web/installed && npm init -y >/dev/null && npm install --silent --no-audit --no-fund --offline ../libahm-*.tgz)
+cp web/package/test/*.mjs build/web/installed/
+program="$PWD/build/release/bin/ahm"
+[ -x "$program" ] || program=""
+(cd build/web/installed && AHM_PROGRAM="${AHM_PROGRAM:-$program}" node --test)
+ls -l build/web/libahm-*.tgz

@@ -1,0 +1,94 @@
+/** A row of the input, the nearest point to a position, or a point of a face (one weight per corner, sum 1). */
+export type Place = number | {position: ArrayLike<number>} | {face: number; weights: ArrayLike<number>};
+/** Numbers one after another, or an array of short arrays. */
+export type Rows = ArrayLike<number> | ArrayLike<ArrayLike<number>>;
+
+/** Base of all errors of the library. Messages say what is wrong, where, and what to do. */
+export class AhmError extends Error {}
+/** An argument is outside its range. */
+export class InvalidArgument extends AhmError {}
+/** The mesh or cloud is not a surface. */
+export class InvalidGeometry extends AhmError {}
+export class InvalidGraph extends AhmError {}
+/** The matrix of a heat map cannot be factored. */
+export class NotPositiveDefinite extends AhmError {}
+/** The memory of WebAssembly (4 GiB) is used up. */
+export class ResourceExhausted extends AhmError {}
+
+/** Names of the numbers in `LogMap.status`: "ok", "disconnected", "beyond_radius", "unreached", "removed". */
+export const statusNames: readonly string[];
+
+/** One entry per row of the input; NaN where the status is not 0 (ok). */
+export interface LogMap {
+  /** Coordinates in the tangent plane of the source, world units. */
+  u: Float64Array;
+  v: Float64Array;
+  /** Geodesic distance, world units. */
+  distance: Float64Array;
+  /** atan2(v, u), in (-pi, pi]. */
+  angle: Float64Array;
+  /** Disagreement of the paths that reach the row, world units: large near the cut locus. */
+  spread: Float64Array;
+  /** Expected error of the coordinates, world units; only of polar maps. */
+  errorEstimate?: Float64Array;
+  /** Index in `statusNames`. */
+  status: Uint8Array;
+  /** In (0, 1]; do not use vectors below 0.5. Only if requested. */
+  quality?: Float64Array;
+}
+
+export interface Path {
+  /** x y z of its points, one after another. */
+  points: Float64Array;
+  /** World units. */
+  length: number;
+  /** False for a trace that ended at the boundary. */
+  complete: boolean;
+  /** "ok" or "disconnected". */
+  status: string;
+}
+
+/** A surface in the memory of the module. Freed by `free`, or some time after it became unreachable. */
+export class Surface {
+  private constructor();
+  /** Number of rows of the input. */
+  readonly rows: number;
+  free(): void;
+}
+
+export type Method = 'automatic' | 'polar' | 'heat' | 'exact';
+
+/** Computes maps, distances and paths on one surface. Keeps the surface alive. */
+export class Solver {
+  private constructor();
+  /** The method in use: "polar", "heat" or "exact". */
+  readonly method: string;
+  /**
+   * The log map of a source.
+   * @param options.radius   rows farther than this get the status "beyond_radius"; world units
+   * @param options.uAxis    a vector of space along which u runs, projected to the surface
+   * @param options.quality  also compute `quality`
+   */
+  logMap(source: Place, options?: {radius?: number; uAxis?: ArrayLike<number>; quality?: boolean}): LogMap;
+  /** Distance of each row from the nearest source, world units; NaN where there is none. */
+  distance(sources: Place | Place[], options?: {radius?: number}): Float64Array;
+  /** The shortest path; on clouds over tangent planes. */
+  path(start: Place, end: Place): Path;
+  /** The straightest geodesic along a vector of space. */
+  trace(start: Place, direction: ArrayLike<number>, length: number): Path;
+  free(): void;
+}
+
+export class Library {
+  private constructor();
+  readonly version: string;
+  /** @param options.nonManifold  "error": refuse edges with three faces and more; "split": cut the mesh there */
+  triangleMesh(positions: Rows, triangles: Rows, options?: {nonManifold?: 'error' | 'split'}): Surface;
+  polygonMesh(positions: Rows, faces: ArrayLike<number>[], options?: {nonManifold?: 'error' | 'split'}): Surface;
+  /** @param options.normals  one per point, of any length; estimated if missing */
+  pointCloud(positions: Rows, options?: {normals?: Rows}): Surface;
+  solver(surface: Surface, options?: {method?: Method}): Solver;
+}
+
+/** Loads the module. @param source  default: libahm.wasm beside this file */
+export function load(source?: string | URL | ArrayBuffer | ArrayBufferView | WebAssembly.Module): Promise<Library>;

@@ -1,0 +1,141 @@
+// The package in Node: known maps, errors, and the maps of the native program (AHM_PROGRAM).
+import assert from 'node:assert/strict';
+import {execFileSync} from 'node:child_process';
+import {mkdtempSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
+import {tmpdir} from 'node:os';
+import {join} from 'node:path';
+import {test} from 'node:test';
+import * as libahm from 'libahm';
+
+const ahm = await libahm.load();
+
+/** A flat square of side x side points, or a surface of the same triangles with the given heights. */
+function square(side, height = () => 0) {
+  const positions = [], triangles = [];
+  for (let i = 0; i < side; ++i)
+    for (let j = 0; j < side; ++j) {
+      const x = i / (side - 1), y = j / (side - 1);
+      positions.push([x, y, height(x, y)]);
+      if (i + 1 < side && j + 1 < side) {
+        const a = i * side + j;
+        triangles.push([a, a + side, a + side + 1], [a, a + side + 1, a + 1]);
+      }
+    }
+  return {positions, triangles};
+}
+
+const near = (found, expected, tolerance, text) => assert.ok(Math.abs(found - expected) <= tolerance, `${text}: ${found}, ${expected}`);
+
+function expectPlane(map, positions, source, tolerance) {
+  positions.forEach(([x, y], i) => {
+    near(map.u[i], x - positions[source][0], tolerance, `u of ${i}`);
+    near(map.v[i], y - positions[source][1], tolerance, `v of ${i}`);
+    near(map.distance[i], Math.hypot(map.u[i], map.v[i]), tolerance, `distance of ${i}`);
+    assert.equal(libahm.statusNames[map.status[i]], 'ok');
+  });
+}
+
+test('maps of a flat square are its coordinates, by every method', () => {
+  const {positions, triangles} = square(21);
+  const mesh = ahm.triangleMesh(positions, triangles);
+  assert.equal(mesh.rows, 441);
+  for (const method of ['polar', 'heat', 'exact']) {
+    const solver = ahm.solver(mesh, {method});
+    assert.equal(solver.method, method);
+    expectPlane(solver.logMap(220, {uAxis: [1, 0, 0]}), positions, 220, 1e-9);
+    solver.free();
+  }
+});
+
+test('typed arrays and arrays of arrays are the same input', () => {
+  const {positions, triangles} = square(9, (x, y) => 0.3 * x * y);
+  const nested = ahm.solver(ahm.triangleMesh(positions, triangles)).logMap(7);
+  const typed = ahm.solver(ahm.triangleMesh(Float64Array.from(positions.flat()), Uint32Array.from(triangles.flat()))).logMap(7);
+  assert.deepEqual(typed, nested);
+});
+
+test('polygons and clouds have maps', () => {
+  const {positions} = square(21);
+  const faces = [];
+  for (let i = 0; i < 20; ++i) for (let j = 0; j < 20; ++j) faces.push([21 * i + j, 21 * i + j + 21, 21 * i + j + 22, 21 * i + j + 1]);
+  const polygons = ahm.solver(ahm.polygonMesh(positions, faces)).logMap(220, {uAxis: [1, 0, 0]});
+  expectPlane(polygons, positions, 220, 1e-9);
+  const normals = positions.map(() => [0, 0, 1]);
+  const cloud = ahm.solver(ahm.pointCloud(positions, {normals})).logMap(220, {uAxis: [1, 0, 0], quality: true});
+  expectPlane(cloud, positions, 220, 1e-9);
+  assert.ok(cloud.quality.every((q) => q > 0.5));
+});
+
+test('places, radius, distances and paths', () => {
+  const {positions, triangles} = square(21);
+  const solver = ahm.solver(ahm.triangleMesh(positions, triangles));
+  const map = solver.logMap({position: [0.31, 0.52, 0]}, {radius: 0.2});
+  assert.equal(libahm.statusNames[map.status[0]], 'beyond_radius');
+  assert.ok(Number.isNaN(map.u[0]));
+  near(map.distance[220], Math.hypot(0.19, 0.02), 1e-9, 'distance');
+  const distance = solver.distance([0, {face: 799, weights: [0, 1, 0]}]);
+  near(distance[440], 0, 1e-12, 'the last corner');
+  near(distance[220], Math.SQRT1_2, 1e-9, 'the center');
+  const path = solver.path(0, 440);
+  near(path.length, Math.SQRT2, 1e-12, 'length');
+  assert.equal(path.status, 'ok');
+  assert.deepEqual([...path.points.slice(-3)], [1, 1, 0]);
+  const trace = solver.trace(220, [1, 0, 0], 0.25);
+  near(trace.points.at(-3), 0.75, 1e-12, 'end of the trace');
+});
+
+test('errors are of the class of the library, with its message', () => {
+  const {positions, triangles} = square(5);
+  const mesh = ahm.triangleMesh(positions, triangles);
+  const solver = ahm.solver(mesh);
+  const refused = (body, kind, text) =>
+    assert.throws(body, (error) => error instanceof kind && error instanceof libahm.AhmError && error instanceof Error && text.test(error.message));
+  refused(() => solver.logMap(25), libahm.InvalidArgument, /row 25/);
+  refused(() => solver.logMap(1.5), libahm.InvalidArgument, /1\.5/);
+  refused(() => solver.logMap([1, 2, 3]), libahm.InvalidArgument, /place/);
+  refused(() => solver.logMap(0, {radius: -1}), libahm.InvalidArgument, /radius/);
+  refused(() => ahm.triangleMesh(positions, [[0, 1, 99]]), libahm.InvalidGeometry, /99/);
+  refused(() => ahm.triangleMesh(positions, [[0, 1]]), libahm.InvalidArgument, /triangles/);
+  refused(() => ahm.pointCloud([[0, 0, 0], [1, 0, 0]]), libahm.InvalidGeometry, /point/);
+  refused(() => ahm.solver(mesh, {method: 'best'}), libahm.InvalidArgument, /method/);
+  refused(() => ahm.solver(ahm.pointCloud(positions), {method: 'exact'}).logMap(0), libahm.InvalidArgument, /./);
+  mesh.free();
+  mesh.free();
+  assert.equal(solver.logMap(0).u.length, 25);  // the solver keeps the surface
+  refused(() => mesh.rows, libahm.InvalidArgument, /freed/);
+});
+
+test('freed memory is used again', () => {
+  const {positions, triangles} = square(41);
+  const once = () => {
+    const mesh = ahm.triangleMesh(positions, triangles), solver = ahm.solver(mesh, {method: 'heat'});
+    solver.logMap(0);
+    solver.free();
+    mesh.free();
+  };
+  const before = process.memoryUsage().arrayBuffers;
+  for (let k = 0; k < 30; ++k) once();
+  assert.ok(process.memoryUsage().arrayBuffers - before < 100e6);
+});
+
+test('maps are those of the native program', {skip: !process.env.AHM_PROGRAM && 'AHM_PROGRAM is not set'}, () => {
+  const folder = mkdtempSync(join(tmpdir(), 'libahm-'));
+  try {
+    const {positions, triangles} = square(61, (x, y) => 0.3 * Math.sin(5 * x + 2 * y) * Math.cos(4 * y - x));
+    const file = join(folder, 'mesh.obj');
+    writeFileSync(file, positions.map((p) => `v ${p.join(' ')}\n`).join('') + triangles.map((t) => `f ${t.map((v) => v + 1).join(' ')}\n`).join(''));
+    for (const method of ['polar', 'heat', 'exact']) {
+      const output = join(folder, `${method}.csv`);
+      execFileSync(process.env.AHM_PROGRAM, ['logmap', file, '--source', '1000', '--method', method, '-o', output]);
+      const [header, ...lines] = readFileSync(output, 'utf8').trim().split('\n').map((line) => line.split(','));
+      const map = ahm.solver(ahm.triangleMesh(positions, triangles), {method}).logMap(1000);
+      for (const name of ['u', 'v', 'distance']) {
+        const column = header.indexOf(name);
+        assert.ok(column >= 0, name);
+        lines.forEach((line, i) => near(map[name][i], Number(line[column]), 1e-9, `${method}: ${name} of row ${i}`));
+      }
+    }
+  } finally {
+    rmSync(folder, {recursive: true});
+  }
+});
