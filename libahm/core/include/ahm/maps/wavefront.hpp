@@ -89,7 +89,8 @@ class Wavefront {
   /// Discards all results and starts again from the seeds. The front does not change the values of seeds. Each seed reuses the curvature of
   /// the front at its vertex from the discarded results, if there is one, so if the front is to continue beyond the seeds, run it over
   /// them first. Neighbors of a point that are no seeds keep their results. Requires directions.
-  void restart(std::span<const Seed> seeds);
+  /// @param is_closed  vertices that the front does not enter unless they are seeds; empty: none
+  void restart(std::span<const Seed> seeds, std::function<bool(Vertex)> is_closed = {});
 
   /// Advances the front until all vertices nearer than `radius` (world units) have their final distance. Vertices beyond may have no
   /// distance, or one that is too long. May be called again after `add`; then only vertices nearer to the new points change.
