@@ -163,8 +163,8 @@ struct Wavefront::Impl {
   /// half of the edge's length farther.
   double limit_ = 0, longest_within_ = 0;
   std::function<bool(Vertex)> is_closed_;  ///< vertices that the front does not enter; empty: none
-  double missed_;       ///< tolerance of `across_side`: share of a side by which a line may miss it
-  bool is_curved_;      ///< whether paths carry the curvature of the front: on Delaunay triangulations
+  double missed_;                          ///< tolerance of `across_side`: share of a side by which a line may miss it
+  bool is_curved_;  ///< whether paths carry the curvature of the front: on Delaunay triangulations
   bool directions_;
   bool of_curve_ = false;  ///< whether samples of a curve are among the points
   std::vector<double>

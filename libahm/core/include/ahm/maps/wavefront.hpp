@@ -79,9 +79,9 @@ class Wavefront {
   /// Exact polar coordinates of one vertex, for example from exact windows around the source.
   struct Seed {
     Vertex vertex;
-    double distance;   ///< world units
-    Vec2 direction;    ///< as `Wavefront::direction`
-    Vec2 arrival;      ///< as `Wavefront::arrival`; NaN: unknown
+    double distance;        ///< world units
+    Vec2 direction;         ///< as `Wavefront::direction`
+    Vec2 arrival;           ///< as `Wavefront::arrival`; NaN: unknown
     Index point = 0;        ///< number of the source point
     double error = 0;       ///< expected error of the direction, radians
     bool mirrored = false;  ///< as `Wavefront::is_mirrored`
