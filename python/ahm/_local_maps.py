@@ -196,7 +196,7 @@ def local_maps(surface: SurfaceLike, radius: Optional[float] = None, k: Optional
         `LogMapSolver.log_map`.
     method : "polar": lengths and directions of shortest paths, by exact windows and small fronts. "heat": the affine heat method,
         smooth on noisy clouds. "auto" (default): the method of a solver, otherwise "polar" on meshes and on clouds with little noise,
-        and "heat" elsewhere; also "heat" if margin, t_coef or variant is given.
+        and "heat" elsewhere; also "heat" if margin, t_coef or variant is set.
     transport : False: without `LocalMaps.transport`, to save memory.
     margin : heat: width of the margin of each patch beyond the radius, in units of sqrt(tau); None: 2. A larger margin is more
         accurate.

@@ -60,7 +60,8 @@ RowLocalMaps of_points(const Given& given, const Places& at, const std::optional
   const std::vector<Source> sources = body.plain_sources(at, axis);  // errors name the source
   if (body.surface() == nullptr) {
     if (options.method == Method::heat) return by_rows(local_maps(body.graph(), sources, options));
-    return with_solver(given, options, [&](const PolarMapSolver& s) { return by_rows(s.local_maps(sources, options)); });
+    return with_solver(given, options,
+                       [&](const PolarMapSolver& s) { return by_rows(s.local_maps(sources, options)); });
   }
   if (options.method == Method::heat) return row_local_maps(*body.surface(), sources, options);
   std::vector<SurfacePoint> points;

@@ -46,8 +46,7 @@ void expect_parts_of_whole_maps(const PolarMapSolver& solver, double radius, dou
       for (int a : {0, 1}) ASSERT_NEAR(maps.logs[2 * e + a], whole.coordinates(v)[a], tolerance * radius);
       const double* U = whole.frames().data() + 4 * to_size(v.index);
       const double expected[] = {U[0], width == 2 ? U[2] : U[1], U[2], U[3]};
-      for (std::size_t k = 0; k < width; ++k)
-        ASSERT_NEAR(maps.transports[to_size(e) * width + k], expected[k], 1e-9);
+      for (std::size_t k = 0; k < width; ++k) ASSERT_NEAR(maps.transports[to_size(e) * width + k], expected[k], 1e-9);
     }
     EXPECT_EQ(maps.neighbors[maps.indptr[s]], sources[s]);
     EXPECT_TRUE(std::is_sorted(maps.distances.begin() + maps.indptr[s], maps.distances.begin() + maps.indptr[s + 1]));
@@ -101,7 +100,8 @@ TEST(LocalPolarMaps, ArePartsOfWholeMapsOnClouds) {
 TEST(LocalPolarMaps, AreExactOnPlanes) {
   Mesh mesh = flat_square(21);
   const auto surface = surface_of(mesh);
-  const std::vector<SurfacePoint> sources{Row(7), Row(200), FacePoint{40, {0.2, 0.3, 0.5}}, EdgePoint{Row(0), Row(1), 0.4}};
+  const std::vector<SurfacePoint> sources{Row(7), Row(200), FacePoint{40, {0.2, 0.3, 0.5}},
+                                          EdgePoint{Row(0), Row(1), 0.4}};
   const Vec3 axis{0.3, 0.8, 0.1};
   const double radius = 0.23;
   const LocalMaps maps = PolarMapSolver(surface).local_maps(sources, {.radius = radius}, axis);

@@ -96,7 +96,7 @@ std::vector<Vertex> sources_on(const Surface& surface) {
 /// @return number of distances that are those of the straight line
 Index expect_rows_of_whole_maps(const Surface& surface, double margin) {
   const std::vector<Vertex> sources = sources_on(surface);
-  const RowLocalMaps maps = row_local_maps(surface, sources, {.radius = local_radius});
+  const RowLocalMaps maps = row_local_maps(surface, sources, {.radius = local_radius, .method = Method::heat});
   const LogMapSolver solver(surface.graph());
   Index straight = 0;
   for (std::size_t s = 0; s < sources.size(); ++s) {
@@ -129,8 +129,8 @@ TEST(RowLocalMaps, AreTheRowsOfWholeMaps) {
 TEST(RowLocalMaps, OfTheNearestAreTheFirstOfALargeRadius) {
   const auto cloud = noisy_sphere();
   const std::vector<Vertex> sources = sources_on(cloud);
-  const RowLocalMaps all = row_local_maps(cloud, sources, {.radius = 2 * local_radius}),
-                     nearest = row_local_maps(cloud, sources, {.k = 40});
+  const RowLocalMaps all = row_local_maps(cloud, sources, {.radius = 2 * local_radius, .method = Method::heat}),
+                     nearest = row_local_maps(cloud, sources, {.k = 40, .method = Method::heat});
   for (std::size_t s = 0; s < sources.size(); ++s) {
     ASSERT_EQ(nearest.indptr[s + 1] - nearest.indptr[s], 40);
     for (Offset k = 0; k < 40; ++k)

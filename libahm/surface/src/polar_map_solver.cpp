@@ -197,7 +197,8 @@ class PolarMapSolver::Fronts {
       front_.run(options.radius, options.progress.stop);
       return front_;
     }
-    const bool continues = exact.horizon < options.radius || leaves_out_neighbors(exact.vertices);
+    const bool is_enough = exact.horizon >= options.radius;
+    const bool continues = !is_enough || longest_edge_to_left_out(exact.vertices) > 0;
     if (!solver_.triangle_graph_) {
       run_from(front_, source, exact.vertices, continues, options);
       return front_;
@@ -207,9 +208,14 @@ class PolarMapSolver::Fronts {
       front_.run(options.radius, options.progress.stop);
     }
     if (!over_) over_.emplace(*solver_.triangle_graph_, solver_.triangle_one_rings_, true);
-    run_from(*over_, source, exact.vertices, exact.horizon < options.radius, options);
+    run_from(*over_, source, exact.vertices, !is_enough, options);
     const auto all = seeds_of_front(*over_, errors ? &front_ : nullptr, options.frames);
-    run_from(front_, source, all, continues, options);
+    // Vertices with triangles that windows have not reached are beyond the radius.
+    const exact::PolyhedralSurface& triangles = solver_.geodesics_->triangles().surface;
+    const Index component = triangles.component(exact.vertices.front().vertex.index);
+    const auto has_triangles = [&triangles, component](Vertex v) { return triangles.component(v.index) == component; };
+    run_from(front_, source, all, continues, options,
+             is_enough ? std::function<bool(Vertex)>(has_triangles) : std::function<bool(Vertex)>());
     return front_;
   }
 
@@ -224,30 +230,28 @@ class PolarMapSolver::Fronts {
                           .progress = options.progress};
     try {
       ExactGeodesics::Seeds found = seeds(exact, *windows_);
-      if (std::isinf(options.radius) || !leaves_out_neighbors(found.vertices)) return found;
-      // The front continues to vertices without triangles. It must not reach other vertices earlier than windows do.
-      exact.radius += longest_edge(found.vertices);
+      const double edge = std::isinf(options.radius) ? 0 : longest_edge_to_left_out(found.vertices);
+      if (edge == 0) return found;
+      // Paths to vertices without triangles may cross edges whose ends are beyond the radius.
+      exact.radius += edge;
       return seeds(exact, *windows_);
     } catch (const InvalidGeometry&) {
       return {};
     }
   }
 
-  /// Whether windows cannot reach a neighbor of the seeds: it has no triangles, or those of another component.
-  bool leaves_out_neighbors(std::span<const Wavefront::Seed> seeds) const {
-    if (!solver_.triangle_graph_) return false;
+  /// On clouds windows cannot reach vertices without triangles, or with those of another component. The longest edge at seeds
+  /// that have such neighbors, world units; 0: there are none.
+  double longest_edge_to_left_out(std::span<const Wavefront::Seed> seeds) const {
+    if (!solver_.triangle_graph_) return 0;
     const exact::PolyhedralSurface& triangles = solver_.geodesics_->triangles().surface;
-    return std::ranges::any_of(seeds, [&](const Wavefront::Seed& seed) {
-      return std::ranges::any_of(solver_.graph_->star(seed.vertex.index).neighbors, [&](Index j) {
-        return triangles.component(j) != triangles.component(seed.vertex.index);
-      });
-    });
-  }
-
-  double longest_edge(std::span<const Wavefront::Seed> seeds) const {
     double longest = 0;
     for (const Wavefront::Seed& seed : seeds) {
-      const Star star = solver_.graph_->star(seed.vertex.index);
+      const Index vertex = seed.vertex.index;
+      const Star star = solver_.graph_->star(vertex);
+      if (std::ranges::all_of(star.neighbors,
+                              [&](Index j) { return triangles.component(j) == triangles.component(vertex); }))
+        continue;
       for (std::size_t e = 0; e < star.degree(); ++e) longest = std::max(longest, length(star.log(e)));
     }
     return longest * solver_.graph_->length_unit();
@@ -255,7 +259,7 @@ class PolarMapSolver::Fronts {
 
   /// @param continues  whether the front reaches vertices that are no seeds
   static void run_from(Wavefront& front, const Source& source, std::span<const Wavefront::Seed> seeds, bool continues,
-                       const PolarMapOptions& options) {
+                       const PolarMapOptions& options, const std::function<bool(Vertex)>& is_closed = {}) {
     front.clear();
     if (continues) {
       front.add(source);
@@ -263,7 +267,7 @@ class PolarMapSolver::Fronts {
       if (front.graph().is_delaunay())
         front.run(std::ranges::max_element(seeds, {}, &Wavefront::Seed::distance)->distance, options.progress.stop);
     }
-    front.restart(seeds);
+    front.restart(seeds, is_closed);
     if (continues) front.run(options.radius, options.progress.stop);
   }
 

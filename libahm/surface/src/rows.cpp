@@ -207,8 +207,7 @@ RowLocalMaps row_local_maps(const Surface& surface, std::span<const SurfacePoint
 }
 
 RowLocalMaps row_local_maps(const Surface& surface, std::span<const Source> sources, const LocalMapOptions& options) {
-  return to_rows(surface, options,
-                 [&](const LocalMapOptions& o) { return local_maps(surface.graph(), sources, o); });
+  return to_rows(surface, options, [&](const LocalMapOptions& o) { return local_maps(surface.graph(), sources, o); });
 }
 
 RowLocalMaps row_local_maps(const Surface& surface, const LocalMapOptions& options) {

@@ -25,10 +25,10 @@ namespace {
 void check_points(const TangentGraph& graph, std::span<const Source> sources, const LocalMapOptions& options) {
   check_extent(options);
   if (graph.dimension() != 2)
-    throw InvalidArgument("dimension_not_2",
-                          "local polar maps need a graph of dimension 2; this one has dimension " +
-                              std::to_string(graph.dimension()),
-                          "use local_maps");
+    throw InvalidArgument(
+        "dimension_not_2",
+        "local polar maps need a graph of dimension 2; this one has dimension " + std::to_string(graph.dimension()),
+        "use local_maps");
   for (const Source& source : sources) {
     check_source(source, graph);
     if (source.is_curve())

@@ -107,7 +107,7 @@ struct Wavefront::Impl {
   Index add(const Source& source);
   void clear();
   void forget();
-  void restart(std::span<const Seed> seeds);
+  void restart(std::span<const Seed> seeds, std::function<bool(Vertex)> is_closed);
   void run(double radius, const StopToken& stop);
   std::vector<Vertex> reached() const;
   double next() const {
@@ -159,11 +159,12 @@ struct Wavefront::Impl {
   std::array<std::vector<Index>, 4> free_;  ///< unused blocks of 1, 2, 4 and 8 entries
   std::vector<double> displacements_;       ///< d per entry: from the vertex to the point, vertex frame; d = 2: empty
   double longest_ = 0;  ///< longest edge passed: a path of length L crosses no side with an end beyond L + `longest_`
-  /// Radius of `run`, and the longest edge passed that a path of this length may cross: one whose nearer end is at most half of the
-  /// edge's length farther.
+  /// Radius of `run`, and the longest edge passed that a path of this length may cross: on triangulations one whose nearer end is at most
+  /// half of the edge's length farther.
   double limit_ = 0, longest_within_ = 0;
-  double missed_;       ///< tolerance of `across_side`: share of a side by which a line may miss it
-  bool is_curved_;      ///< whether paths carry the curvature of the front: on Delaunay triangulations
+  std::function<bool(Vertex)> is_closed_;  ///< vertices that the front does not enter; empty: none
+  double missed_;                          ///< tolerance of `across_side`: share of a side by which a line may miss it
+  bool is_curved_;  ///< whether paths carry the curvature of the front: on Delaunay triangulations
   bool directions_;
   bool of_curve_ = false;  ///< whether samples of a curve are among the points
   std::vector<double>
@@ -298,6 +299,7 @@ void Wavefront::Impl::forget() {
 
 void Wavefront::Impl::clear() {
   forget();
+  is_closed_ = nullptr;
   points_ = 0;
   of_curve_ = false;
   longest_ = 0;
@@ -311,7 +313,7 @@ std::vector<Vertex> Wavefront::Impl::reached() const {
   return vertices;
 }
 
-void Wavefront::Impl::restart(std::span<const Seed> seeds) {
+void Wavefront::Impl::restart(std::span<const Seed> seeds, std::function<bool(Vertex)> is_closed) {
   struct Start {
     double focusing = 0;
     float widening = 0;
@@ -333,6 +335,7 @@ void Wavefront::Impl::restart(std::span<const Seed> seeds) {
         beside_point.push_back({corner.neighbor, *next, paths_[number(*next)]});
   }
   forget();
+  is_closed_ = nullptr;
   for (std::size_t k = 0; k < seeds.size(); ++k) {
     const Index vertex = seeds[k].vertex.index;
     offer(vertex, seeds[k].point, seeds[k].distance / graph_.length_unit(), 0, {},
@@ -347,10 +350,14 @@ void Wavefront::Impl::restart(std::span<const Seed> seeds) {
   // Only seeds with a neighbor that is not a seed need to spread.
   queue_.clear();
   longest_ = 0;
+  is_closed_ = std::move(is_closed);
+  const auto is_free = [&](const Corner& corner) {
+    return first_[corner.neighbor] == none && !(is_closed_ && is_closed_(Vertex(corner.neighbor)));
+  };
   for (const Seed& seed : seeds) {
     const Index vertex = seed.vertex.index;
     const std::span<const Corner> ring = one_ring(vertex);
-    if (std::ranges::none_of(ring, [&](const Corner& corner) { return first_[corner.neighbor] == none; })) continue;
+    if (std::ranges::none_of(ring, is_free)) continue;
     queue_.push({entries_[first_[vertex]].distance, vertex, seed.point});
     for (const Corner& corner : ring) longest_ = std::max(longest_, corner.length);
   }
@@ -404,6 +411,7 @@ void Wavefront::Impl::offer(Index vertex, Index point, double distance, double s
   const std::span<const Entry> entries = entries_of(vertex);
   const double nearest = entries.empty() ? std::numeric_limits<double>::infinity() : entries.front().distance;
   if (!(distance <= nearest + slack)) return;
+  if (entries.empty() && is_closed_ && is_closed_(Vertex(vertex))) return;
   Index own;
   bool is_added = false;
   if (const Entry* known = find(vertex, point)) {
@@ -493,7 +501,7 @@ void Wavefront::Impl::spread(Index from, Index point, double distance) {
     }
     longest = std::max(longest, corners[k].length);
   }
-  if (distance - longest / 2 <= limit_) longest_within_ = std::max(longest_within_, longest);
+  if (!graph_.is_delaunay() || distance - longest / 2 <= limit_) longest_within_ = std::max(longest_within_, longest);
   for (std::size_t k = 0; k < degree; ++k) {
     const std::size_t next = k + 1 < degree ? k + 1 : 0;
     const Corner &right = corners[k], &left = corners[next];
@@ -649,7 +657,9 @@ Index Wavefront::points() const noexcept { return impl_->points_; }
 const TangentGraph& Wavefront::graph() const noexcept { return impl_->graph_; }
 bool Wavefront::has_directions() const noexcept { return impl_->directions_; }
 void Wavefront::clear() { impl_->clear(); }
-void Wavefront::restart(std::span<const Seed> seeds) { impl_->restart(seeds); }
+void Wavefront::restart(std::span<const Seed> seeds, std::function<bool(Vertex)> is_closed) {
+  impl_->restart(seeds, std::move(is_closed));
+}
 void Wavefront::run(double radius, const StopToken& stop) { impl_->run(radius, stop); }
 double Wavefront::next() const { return impl_->next(); }
 std::vector<Vertex> Wavefront::reached() const { return impl_->reached(); }

@@ -308,9 +308,8 @@ ExactGeodesics::Seeds ExactGeodesics::seeds(const PlacedSources& from, const Exa
     const double distance = windows.distance_of(v);
     if (!(distance <= windows.horizon())) continue;
     const exact::ArrivalRecord& in = windows.arrival_of(v);
-    const VertexArrival arrival = options.frames && in.half >= 0
-                                      ? arrival_at(flat_, in.half, in.from)
-                                      : VertexArrival{NAN, mirrored_at(flat_, v)};
+    const VertexArrival arrival = options.frames && in.half >= 0 ? arrival_at(flat_, in.half, in.from)
+                                                                 : VertexArrival{NAN, mirrored_at(flat_, v)};
     const double departure = distance > 0 ? scale * in.direction : NAN;
     seeds.vertices.push_back({.vertex = Vertex(v),
                               .distance = flat_.length_unit * distance,
@@ -363,8 +362,10 @@ LabelledLogMap ExactGeodesics::log_map(const PlacedSources& from, Source source,
     if (!options.frames) continue;
     Axes frame{1, 0, 0, 1};
     if (exact.status(v) == Status::ok)
-      frame = exact.arrival(v).half >= 0 ? axes_at(arrival_at(flat_, exact.arrival(v).half, exact.arrival(v).from).angle - std::atan2(phi[1], phi[0]))
-                                         : in_frame(flat_, i, a);
+      frame = exact.arrival(v).half >= 0
+                  ? axes_at(arrival_at(flat_, exact.arrival(v).half, exact.arrival(v).from).angle -
+                            std::atan2(phi[1], phi[0]))
+                  : in_frame(flat_, i, a);
     extras.frames.insert(extras.frames.end(), frame.begin(), frame.end());
   }
   extras.spread = jumps(coordinates, labels, source.is_curve());

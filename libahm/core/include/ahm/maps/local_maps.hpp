@@ -50,7 +50,7 @@ struct LocalMapOptions {
   bool bound_by_straight_line = false;
   /// Polar maps use `threads` and `progress` only. Heat: the mean edge length h is measured on the whole graph.
   DiffusionOptions heat = {};
-  std::size_t memory = 0;      ///< bytes available for the result; 0: the memory of the machine
+  std::size_t memory = 0;  ///< bytes available for the result; 0: the memory of the machine
 };
 
 /// Local maps of many sources in compressed rows: source s has the entries indptr[s] .. indptr[s + 1], nearest first.

@@ -79,9 +79,9 @@ class Wavefront {
   /// Exact polar coordinates of one vertex, for example from exact windows around the source.
   struct Seed {
     Vertex vertex;
-    double distance;   ///< world units
-    Vec2 direction;    ///< as `Wavefront::direction`
-    Vec2 arrival;      ///< as `Wavefront::arrival`; NaN: unknown
+    double distance;        ///< world units
+    Vec2 direction;         ///< as `Wavefront::direction`
+    Vec2 arrival;           ///< as `Wavefront::arrival`; NaN: unknown
     Index point = 0;        ///< number of the source point
     double error = 0;       ///< expected error of the direction, radians
     bool mirrored = false;  ///< as `Wavefront::is_mirrored`
@@ -89,7 +89,8 @@ class Wavefront {
   /// Discards all results and starts again from the seeds. The front does not change the values of seeds. Each seed reuses the curvature of
   /// the front at its vertex from the discarded results, if there is one, so if the front is to continue beyond the seeds, run it over
   /// them first. Neighbors of a point that are no seeds keep their results. Requires directions.
-  void restart(std::span<const Seed> seeds);
+  /// @param is_closed  vertices that the front does not enter unless they are seeds; empty: none
+  void restart(std::span<const Seed> seeds, std::function<bool(Vertex)> is_closed = {});
 
   /// Advances the front until all vertices nearer than `radius` (world units) have their final distance. Vertices beyond may have no
   /// distance, or one that is too long. May be called again after `add`; then only vertices nearer to the new points change.
