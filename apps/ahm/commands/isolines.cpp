@@ -87,6 +87,7 @@ void write_view(const IsolinesOptions& options, const Input& input, const Polyli
     if (b > 0) pieces.push_back(b);
   scene.curve = lines.points;
   scene.curve_pieces = pieces;
+  scene.source = lines.points.front();
   results.write_view(scene, journal, picture);
 }
 

@@ -103,6 +103,7 @@ void write_view(const InputOptions& input_options, const OutputOptions& output, 
   }
   scene.curve = curve;
   scene.curve_pieces = pieces;
+  scene.source = curve.front();
   results.write_view(scene, journal, picture);
 }
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <unordered_map>
 
+#include "ahm/util/small_math.hpp"
 #include "ahm/util/vec.hpp"
 #include "tool_path/tool_path.hpp"
 
@@ -39,6 +40,7 @@ class AreaSamples {
 struct PassPoint {
   Vec3 position;  ///< in spacings
   Vec3 normal;    ///< of the nearest face, of any length; zero where there is none
+  Index component;
   Index pass;
   double arclength, pass_length;
   bool closed;
@@ -58,6 +60,7 @@ std::vector<PassPoint> points_of_passes(const ToolPath& path, double step) {
         const double t = (static_cast<double>(j) + 0.5) / static_cast<double>(parts);
         result.push_back({(1 / path.spacing) * ((1 - t) * a.position + t * b.position),
                           {},
+                          -1,
                           static_cast<Index>(p),
                           walked + t * length,
                           pass.length / path.spacing,
@@ -69,9 +72,9 @@ std::vector<PassPoint> points_of_passes(const ToolPath& path, double step) {
   return result;
 }
 
-/// Whether two points belong to different parts of the passes, on the same side of a wall.
+/// Whether two points belong to different parts of the passes, on the same side of a wall and in the same component.
 bool are_two_passes(const PassPoint& a, const PassPoint& b) {
-  if (dot(a.normal, b.normal) <= 0) return false;
+  if (a.component != b.component || dot(a.normal, b.normal) <= 0) return false;
   if (a.pass != b.pass) return true;
   double along = std::abs(a.arclength - b.arclength);
   if (a.closed) along = std::min(along, a.pass_length - along);
@@ -129,6 +132,7 @@ ToolPathMeasures tool_path_measures(const Surface& surface, const ToolPath& path
     if (const auto on_mesh = domain.locator.nearest(point.position)) {
       sources.push_back(*on_mesh);
       point.normal = domain.mesh.area_normal(on_mesh->face);
+      point.component = domain.surface.component(domain.mesh.faces[to_size(on_mesh->face)][0]);
     }
   result.area *= path.spacing * path.spacing;
   if (sources.empty()) {

@@ -292,14 +292,14 @@ void remove_short(const FaceMesh& mesh, double length, std::vector<PassCurve>& p
   std::erase_if(passes, [&](const PassCurve& pass) { return curve_length(mesh, pass.curve) < length; });
 }
 
-/// Appends sources that represent a curve in an exact map: the middles of pieces of at most `curve_step`. They lie inside
-/// faces, unless the curve runs along a side.
-void add_sources(const FaceMesh& mesh, const MeshCurve& curve, std::vector<MeshPoint>& sources) {
+/// Appends sources that represent a curve in an exact map: the middles of pieces of at most `step`. They lie inside faces,
+/// unless the curve runs along a side.
+void add_sources(const FaceMesh& mesh, const MeshCurve& curve, double step, std::vector<MeshPoint>& sources) {
   for (std::size_t k = 0; k < segments(curve); ++k) {
     const MeshPoint a = in_face(mesh, curve.points[k], curve.faces[k]),
                     b = in_face(mesh, after(curve, k), curve.faces[k]);
     const double length = distance(mesh.position(a), mesh.position(b));
-    const auto parts = std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil(length / curve_step)));
+    const auto parts = std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil(length / step)));
     if (!(length > 1e-9)) continue;
     for (std::size_t j = 0; j < parts; ++j)
       sources.push_back(between(a, b, (static_cast<double>(j) + 0.5) / static_cast<double>(parts)));
@@ -308,7 +308,7 @@ void add_sources(const FaceMesh& mesh, const MeshCurve& curve, std::vector<MeshP
 
 std::vector<MeshPoint> sources_of(const FaceMesh& mesh, const std::vector<PassCurve>& passes) {
   std::vector<MeshPoint> result;
-  for (const PassCurve& pass : passes) add_sources(mesh, pass.curve, result);
+  for (const PassCurve& pass : passes) add_sources(mesh, pass.curve, pass_step, result);
   return result;
 }
 
@@ -436,7 +436,7 @@ std::vector<PassCurve> make_passes(const PathDomain& domain, const std::vector<M
   std::vector<MeshPoint> sources;
   std::vector<PassCurve> levels;
   for (const MeshCurve& seed : seeds) {
-    add_sources(domain.mesh, seed, sources);
+    add_sources(domain.mesh, seed, seed_step, sources);
     if (phase == 0) levels.push_back({seed, PassOrigin::seed, 0});
   }
   const Front from_seed = front(domain.surface, sources, infinity, progress);

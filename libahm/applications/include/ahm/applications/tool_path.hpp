@@ -138,7 +138,7 @@ struct ToolPathMeasures {
   double covered = 0;      ///< share of the area within 0.6 spacings of a pass, along the surface
   double largest_gap = 0;  ///< largest distance of a point of the region from the nearest pass, in spacings
   /// Share of the pass length that is closer than 0.5 spacings, in space, to another pass, or to the same pass more than two
-  /// spacings along it. Points on opposite sides of a wall are not compared.
+  /// spacings along it. Points of different components, and on opposite sides of a wall, are not compared.
   double double_covered = 0;
 };
 
