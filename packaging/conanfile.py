@@ -14,7 +14,7 @@ class Ahm(ConanFile):
     settings = "os", "compiler", "build_type", "arch"
     options = {"shared": [True, False], "fPIC": [True, False]}
     default_options = {"shared": False, "fPIC": True}
-    requires = "eigen/3.4.0", "nanoflann/1.5.2"  # LAPACK and BLAS are the system's
+    requires = "eigen/3.4.0", "nanoflann/1.5.2"
 
     def set_version(self):
         header = load(self, os.path.join(self.recipe_folder, "../libahm/core/include/ahm/version.hpp"))
@@ -30,7 +30,7 @@ class Ahm(ConanFile):
 
     def generate(self):
         toolchain = CMakeToolchain(self)
-        for option in ("WITH_FLANN", "WITH_PCL", "BUILD_APPS", "BUILD_PYTHON", "BUILD_TESTS", "BUILD_EXAMPLES"):
+        for option in ("WITH_BLAS", "WITH_FLANN", "WITH_PCL", "BUILD_APPS", "BUILD_PYTHON", "BUILD_TESTS", "BUILD_EXAMPLES"):
             toolchain.cache_variables["AHM_" + option] = False
         toolchain.generate()
         CMakeDeps(self).generate()

@@ -40,6 +40,8 @@ rm -rf build/web/installed && mkdir build/web/installed
 (cd build/web/package && npm pack --silent --pack-destination ..)
 (cd build/web/installed && npm init -y >/dev/null && npm install --silent --no-audit --no-fund --offline ../libahm-*.tgz)
 cp web/package/test/*.mjs build/web/installed/
+sed -n '/^```js$/,/^```$/p' web/package/README.md | grep -v '^```' >build/web/installed/readme.mjs
+(cd build/web/installed && node readme.mjs)
 program="$PWD/build/release/bin/ahm"
 [ -x "$program" ] || program=""
 (cd build/web/installed && AHM_PROGRAM="${AHM_PROGRAM:-$program}" node --test)

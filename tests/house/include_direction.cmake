@@ -24,6 +24,10 @@ foreach(room util core surface applications)
   forbid(libahm/${room} "(iostream|fstream|filesystem)>" "they do not print, and read the limits of the process only" "memory_limits")
   forbid(libahm/${room} "cholmod" "the computing libraries do without SuiteSparse")
 endforeach()
+# Builds without threads: these headers are missing or empty there. <mutex> is for std::call_once only.
+foreach(folder libahm/core libahm/surface libahm/applications backends/trimesh backends/polymesh backends/pointcloud/src backends/grid)
+  forbid(${folder} "(thread|stop_token|condition_variable)>" "use ahm/util/parallel.hpp, ahm/util/mutex.hpp and ahm/stop_token.hpp")
+endforeach()
 # Folders of the core: fields includes maps, maps includes heat, heat includes graph.
 forbid(libahm/core/include/ahm/graph "ahm/(heat|maps|fields)/" "graph is the lowest room of the core")
 forbid(libahm/core/src/graph "(ahm/)?(heat|maps|fields)/" "graph is the lowest room of the core")

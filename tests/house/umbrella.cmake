@@ -40,7 +40,7 @@ if(named EQUAL 0)
   message(FATAL_ERROR "no page names a header")
 endif()
 
-foreach(file CITATION.cff pyproject.toml packaging/libahm/vcpkg.json)
+foreach(file CITATION.cff pyproject.toml packaging/libahm/vcpkg.json web/package/package.json)
   file(STRINGS "${ROOT}/${file}" lines REGEX "^ *\"?version\"? *[:=] *\"?[0-9]")
   string(REGEX MATCH "[0-9]+\\.[0-9]+\\.[0-9]+" found "${lines}")
   if(NOT found STREQUAL VERSION)

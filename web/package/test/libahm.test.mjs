@@ -35,6 +35,10 @@ function expectPlane(map, positions, source, tolerance) {
   });
 }
 
+test('the module has the version of the package', () => {
+  assert.equal(ahm.version, JSON.parse(readFileSync('node_modules/libahm/package.json', 'utf8')).version);
+});
+
 test('maps of a flat square are its coordinates, by every method', () => {
   const {positions, triangles} = square(21);
   const mesh = ahm.triangleMesh(positions, triangles);

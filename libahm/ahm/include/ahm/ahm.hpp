@@ -42,6 +42,7 @@
 #include "ahm/maps/wavefront.hpp"
 #include "ahm/progress.hpp"
 #include "ahm/report.hpp"
+#include "ahm/stop_token.hpp"
 #include "ahm/surface/directions.hpp"
 #include "ahm/surface/exact/exact_geodesics.hpp"
 #include "ahm/surface/exact/exact_map.hpp"

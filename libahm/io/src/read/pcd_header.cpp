@@ -2,12 +2,12 @@
 #include "read/pcd_header.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <optional>
 #include <span>
 
+#include "ahm/util/from_chars.hpp"
 #include "ahm/util/text.hpp"
 #include "read/point_stream.hpp"
 #include "write/writers.hpp"
@@ -405,7 +405,7 @@ double value_in(const Input& in, std::int64_t line, const PcdField& field, std::
   if (field.size == 8) return value;
   if (word.starts_with('+')) word.remove_prefix(1);
   float rounded = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), rounded);
+  const auto [end, error] = detail::from_chars(word.data(), word.data() + word.size(), rounded);
   return error == std::errc{} ? rounded : static_cast<float>(value);  // outside the range of floats: infinity or zero
 }
 

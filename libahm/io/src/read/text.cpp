@@ -4,6 +4,8 @@
 #include <charconv>
 #include <system_error>
 
+#include "ahm/util/from_chars.hpp"
+
 namespace ahm::io {
 namespace {
 
@@ -127,7 +129,7 @@ bool equals_ignoring_case(std::string_view word, std::string_view lower) noexcep
 std::optional<double> to_real(std::string_view word) noexcept {
   word = without_plus(word);
   double value = 0.0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  const auto [end, error] = detail::from_chars(word.data(), word.data() + word.size(), value);
   if (end != word.data() + word.size()) return std::nullopt;
   if (error == std::errc{}) return value;
   if (error == std::errc::result_out_of_range && is_underflow(word)) return word.starts_with('-') ? -0.0 : 0.0;
