@@ -140,7 +140,8 @@ constexpr double max_heat_loss = 1e-6;
 /// The symbolic analyses of A and B. A complex B has the pattern of A and shares its analysis.
 class Analysis {
  public:
-  Analysis(const AssembledOperators& matrices, const FactorOptions& options) : scalar_(matrices.A, options.ordering, options.threads) {}
+  Analysis(const AssembledOperators& matrices, const FactorOptions& options)
+      : scalar_(matrices.A, options.ordering, options.threads) {}
 
   const SymbolicCholesky& of_A() const { return scalar_; }
   /// @param dimension  dimension of the graph
