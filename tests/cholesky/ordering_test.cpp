@@ -188,7 +188,7 @@ TEST(NestedDissection, IsAPermutationOfAnyGraphOnAnyNumberOfThreads) {
   for (std::int32_t v = 1; v < 2000; ++v)
     for (int k = 0; k < 3; ++k) random_edges.emplace_back(v, static_cast<std::int32_t>(random() % v));
   std::ranges::sort(random_edges);
-  random_edges.erase(std::ranges::unique(random_edges).begin(), random_edges.end());
+  random_edges.erase(std::unique(random_edges.begin(), random_edges.end()), random_edges.end());
   const std::pair<std::int32_t, Edges> cases[]{{0, {}},
                                                {1, {}},
                                                {500, {}},

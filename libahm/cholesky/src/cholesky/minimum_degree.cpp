@@ -34,7 +34,7 @@ Numbers minimum_degree(const Adjacency& graph, std::span<const std::int32_t> ver
     all.insert(all.end(), row.begin(), row.end());
   }
   std::ranges::sort(all);
-  all.erase(std::ranges::unique(all).begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
   const auto place = [&](std::int32_t v) {
     return static_cast<std::size_t>(std::ranges::lower_bound(all, v) - all.begin());
   };
