@@ -204,8 +204,11 @@ std::string PageSurface::map_bundle(const Scene& scene, const PictureOptions& op
   if (!distance.empty()) out.add<float>("distance", surface.lengths(distance));
   if (!scene.details.spread.empty()) out.add<float>("spread", surface.lengths(scene.details.spread));
   if (!scene.quality.empty()) out.add<float>("quality", std::vector<float>(scene.quality.begin(), scene.quality.end()));
-  if (!scene.bounded.empty())
-    out.add<std::uint8_t>("bounded", std::vector<std::uint8_t>(scene.bounded.begin(), scene.bounded.end()));
+  if (!scene.bounded.empty()) {
+    std::vector<std::uint8_t> bounded;
+    for (const double is_bound : scene.bounded) bounded.push_back(is_bound == 1 ? 1 : 0);  // NaN: not mapped
+    out.add<std::uint8_t>("bounded", bounded);
+  }
   if (!scene.details.status.empty()) {
     std::vector<std::uint8_t> status;
     for (const Status s : scene.details.status) status.push_back(static_cast<std::uint8_t>(s));
