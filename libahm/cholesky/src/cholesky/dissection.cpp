@@ -239,6 +239,8 @@ class Dissection {
 
 }  // namespace
 
-Numbers nested_dissection(const Adjacency& graph, unsigned threads) { return Dissection(graph, threads).order; }
+Numbers nested_dissection(const Adjacency& graph, unsigned threads) {
+  return Dissection(graph, detail::thread_count(threads)).order;  // 0 would stay 0 when it is halved
+}
 
 }  // namespace ahm
