@@ -53,7 +53,7 @@ class InversePoints(NamedTuple):
 class LogMap:
     """A log map: one entry per row of the input. Numbers are NaN exactly where `status` is not ok.
 
-    The arrays `uv`, `distance`, `spread`, `error_estimate` and `status` are read-only views, not copies.
+    The arrays `uv`, `distance`, `spread`, `error_estimate`, `bounded` and `status` are read-only views, not copies.
 
     >>> import ahm
     >>> mesh = ahm.TriangleMesh(*ahm.shapes.plane(4, 3))
@@ -110,6 +110,14 @@ class LogMap:
     def error_estimate(self) -> Optional[np.ndarray]:
         """(n,) estimated length of the error of `uv`, world units, for polar maps. None for heat and exact maps."""
         found = self._map.error_estimate()
+        return found if len(found) else None
+
+    @property
+    def bounded(self) -> Optional[np.ndarray]:
+        """(n,) 1 where `distance` is only a lower bound, the straight line in space; otherwise 0, and NaN as everywhere.
+
+        None where no distance is raised to a bound: for exact maps, maps of curves, and graphs without a surface."""
+        found = self._map.bounded()
         return found if len(found) else None
 
     @property

@@ -315,6 +315,7 @@ void add_maps(py::module_& module) {
       .def("uv", &uv)
       .def("distance", [](const MapPtr& m) { return column(m, &RowLogMap::distance, m->map.distances()); })
       .def("spread", [](const MapPtr& m) { return column(m, &RowLogMap::spread, m->map.spread()); })
+      .def("bounded", [](const MapPtr& m) { return column(m, &RowLogMap::bounded, {}); })
       .def("error_estimate",
            [](const MapPtr& m) { return column(m, &RowLogMap::error_estimate, m->map.error_estimate()); })
       .def("angle", &angle)
@@ -327,8 +328,10 @@ void add_maps(py::module_& module) {
       .def("sample", &sample);
   module.def("exact_maps", &exact_maps);
   module.def("choose_method", [](const BodyPtr& body) {
-    return std::string(to_string(compute(
-        [body] { return body->surface() ? body->surface()->suggested_method() : choose_method(body->graph()); })));
+    return std::string(to_string(compute([body] {
+      if (body->surface()) return body->surface()->suggested_method();
+      return body->grid() ? body->grid()->suggested_method() : choose_method(body->graph());
+    })));
   });
 }
 

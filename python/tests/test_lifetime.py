@@ -363,11 +363,13 @@ def test_maps_that_cannot_fit_are_refused_at_once():
         resource.setrlimit(resource.RLIMIT_AS, (4 << 30, 4 << 30))
         grid = ahm.Grid((40000, 40000))
         print(grid)
-        try:
-            ahm.log_map(grid, 0)
-        except ahm.ResourceExhausted as error:
-            print(error)
+        for method in ("heat", "polar"):
+            try:
+                ahm.log_map(grid, 0, method=method)
+            except ahm.ResourceExhausted as error:
+                print(error)
     """)
+    assert "out of memory while preparing polar maps on 1600000000 vertices" in result.stdout, (result.stdout, result.stderr)
     assert "40000 x 40000" in result.stdout, (result.stdout, result.stderr)
     assert "maps on 1600000000 vertices need about" in result.stdout and "GB" in result.stdout, (result.stdout, result.stderr)
 

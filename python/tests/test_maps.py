@@ -66,6 +66,17 @@ def test_distances_on_the_sphere_are_great_circles(sphere):
     assert polar.error_estimate.shape == (642,) and heat.error_estimate is None
 
 
+def test_distances_that_are_only_bounds_are_marked(sphere):
+    for method in ("polar", "heat"):
+        m = ahm.log_map(sphere, 0, method=method)
+        straight = np.linalg.norm(sphere.points - sphere.points[0], axis=1)
+        assert set(m.bounded) <= {0, 1}
+        np.testing.assert_allclose(m.distance[m.bounded == 1], straight[m.bounded == 1])
+    assert ahm.log_map(sphere, 0, method="exact").bounded is None
+    grid = ahm.Grid([5, 5], spacing=1)
+    assert ahm.log_map(grid, 0).bounded is None
+
+
 def test_batches_are_the_same_maps(sphere):
     solver = ahm.LogMapSolver(sphere)
     sources = [0, 17, 333]
@@ -195,6 +206,18 @@ def test_obstacles_cut_grids_into_rooms():
     grid = ahm.Grid((6, 5), 1.0, blocked=blocked)
     status = ahm.log_map(grid, 0).status.reshape(grid.shape, order="F")
     assert (status[:3] == 0).all() and (status[3:] == ahm.Status.disconnected).all()
+
+
+def test_maps_of_grids_go_around_obstacles():
+    blocked = np.zeros((12, 8), bool)
+    blocked[4:8, :6] = True
+    grid = ahm.Grid((13, 9), 1.0, blocked=blocked)
+    m = ahm.log_map(grid, grid.row((1, 0)))
+    assert m.method == "polar" and ahm.log_map(ahm.Grid((4, 4, 4)), 0).method == "heat"
+    around = np.hypot(3, 6) + 4 + np.hypot(4, 6)  # by the two corners
+    far = grid.row((12, 0))
+    np.testing.assert_allclose(m.distance[far], around, rtol=0.01)
+    np.testing.assert_allclose(m.uv[far] / m.distance[far], np.array([3, 6]) / np.hypot(3, 6), atol=0.05)
 
 
 def test_a_surfaces_graph_makes_the_same_maps(sphere):

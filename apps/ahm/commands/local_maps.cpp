@@ -200,7 +200,9 @@ void run(const LocalMapsOptions& options) {
   j["sources"] = wanted.size();
   j["entries"] = maps.neighbors.size();
   j["mean_neighbors"] = mean;
-  deliver(j, fmt::format("{} with {:.1f} vertices on average\n", counted(wanted.size(), "neighborhood"), mean),
+  deliver(j,
+          fmt::format("{} with {:.1f} vertices on average, method {}\n", counted(wanted.size(), "neighborhood"), mean,
+                      to_string(method)),
           options.output, journal);
 }
 
@@ -218,8 +220,7 @@ void offer(CLI::App& app, LocalMapsOptions& o) {
   add_variant(app, o.solve);
   add_backend(app, o.input);
   add_t_coef(app, o.solve);
-  add_drop_nan(app, o.input);
-  add_normals(app, o.input);
+  add_cloud_options(app, o.input);
   add_mesh_options(app, o.input);
   add_threads(app, o.input, &o.solve);
   add_json(app, o.output);

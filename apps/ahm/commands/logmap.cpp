@@ -147,9 +147,10 @@ std::string as_text(const LogmapRun& run, std::optional<double> reliable) {
     if (const std::size_t c = count(run.rows, s); c > 0 || s == Status::ok)
       text += fmt::format(", {} {}", c, to_string(s));
   const Vec3& p = run.source.position;
-  text += fmt::format("\nsource {} at {:.6g} {:.6g} {:.6g}, largest distance {:.6g}, mean edge length {:.4g}\n",
-                      run.source.row ? fmt::format("{}", run.source.row->index) : to_string(run.spec), p[0], p[1], p[2],
-                      largest_distance(run.rows), run.input.mean_edge_length());
+  text +=
+      fmt::format("\nsource {} at {:.6g} {:.6g} {:.6g}, largest distance {:.6g}, mean edge length {:.4g}, method {}\n",
+                  run.source.row ? fmt::format("{}", run.source.row->index) : to_string(run.spec), p[0], p[1], p[2],
+                  largest_distance(run.rows), run.input.mean_edge_length(), to_string(run.map.method()));
   text += quality_as_text(run.rows.distance, run.quality, reliable);
   if (!run.rows.error_estimate.empty())
     text += fmt::format(", median error of (u, v) about {:.2g}", median(run.rows.error_estimate));

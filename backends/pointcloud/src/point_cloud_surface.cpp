@@ -7,6 +7,7 @@
 #include <new>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "ahm/error.hpp"
@@ -195,19 +196,21 @@ void fill_vertex_data(CsrGraphData& g, const CleanPoints& cloud, const TangentPl
 }
 
 /// The rounding step of single precision at the largest coordinates, if all coordinates are single-precision numbers and some
-/// of the largest are odd multiples of the step; otherwise 0.
-double single_precision_step(std::span<const Vec3> points) {
+/// of the largest are odd multiples of the step; otherwise 0. Second: the axis of the largest coordinates.
+std::pair<double, int> single_precision_step(std::span<const Vec3> points) {
   float farthest = 0;
+  int axis = 0;
   for (const Vec3& p : points)
-    for (const double x : p) {
-      if (!std::isfinite(x)) continue;
-      const auto single = static_cast<float>(x);
-      if (static_cast<double>(single) != x) return 0;
-      farthest = std::max(farthest, std::abs(single));
+    for (int a = 0; a < 3; ++a) {
+      if (!std::isfinite(p[a])) continue;
+      const auto single = static_cast<float>(p[a]);
+      if (static_cast<double>(single) != p[a]) return {};
+      if (std::abs(single) > farthest) farthest = std::abs(single), axis = a;
     }
   const double step = static_cast<double>(std::nextafter(farthest, std::numeric_limits<float>::infinity())) - farthest;
   const auto is_rounded = [&](double x) { return std::abs(x) > farthest / 2 && std::fmod(std::abs(x) / step, 2) == 1; };
-  return std::ranges::any_of(points, [&](const Vec3& p) { return std::ranges::any_of(p, is_rounded); }) ? step : 0;
+  const bool is_any = std::ranges::any_of(points, [&](const Vec3& p) { return std::ranges::any_of(p, is_rounded); });
+  return {is_any ? step : 0, axis};
 }
 
 /// Fraction of the triangles found in the local triangulations of all three corners; 1 if there are no triangles.
@@ -269,7 +272,7 @@ PointCloudSurface PointCloudSurface::build(std::span<const Vec3> input, std::spa
   details.smoothed = static_cast<Index>(std::count(cloud.smoothed.begin(), cloud.smoothed.end(), 1));
   details.noise = typical_noise.deviation * cloud.unit;
   details.layer_gap = typical_noise.layer_gap * cloud.unit;
-  details.coordinate_step = single_precision_step(input);
+  std::tie(details.coordinate_step, details.coarse_axis) = single_precision_step(input);
   if (!normals.empty()) details.estimated = planes.estimated;
   details.contradicted = planes.contradicted;
   details.thick = planes.thick;
@@ -410,7 +413,7 @@ std::vector<Warning> PointCloudSurface::warnings() const {
   const double mean_edge = graph_->mean_edge_length() * graph_->length_unit();
   // Regular grids may have such steps, too, but no duplicates.
   if (d.coordinate_step > coarse_step * mean_edge && (d.coordinate_step < grid_step * mean_edge || d.duplicates > 0))
-    result.push_back({"coarse_coordinates", {d.coordinate_step, mean_edge}, {}});
+    result.push_back({"coarse_coordinates", {d.coordinate_step, mean_edge}, {}, std::string(1, "xyz"[d.coarse_axis])});
   warn("thin_walls", d.rejected_normals);
   warn("reflections", d.reflections);
   if (d.components > 1) warn("cloud_components", d.components);

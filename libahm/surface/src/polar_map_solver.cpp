@@ -162,16 +162,20 @@ PolarMapSolver::PolarMapSolver(const TangentGraph& graph, const PolarSolverOptio
         "dimension_not_2",
         "a polar map needs a graph of dimension 2; this one has dimension " + std::to_string(graph.dimension()),
         "use the heat method");
-  one_rings_ = Wavefront::one_rings(graph, options.threads, false);
+  one_rings_ = detail::with_memory_check("preparing polar maps on " + std::to_string(graph.size()) + " vertices",
+                                         [&] { return Wavefront::one_rings(graph, options.threads, false); });
 }
 
 PolarMapSolver::PolarMapSolver(const Surface& surface, const PolarSolverOptions& options)
     : PolarMapSolver(surface.graph(), options) {
   surface_ = &surface;
-  windows_ = options.windows.value_or(std::max(min_windows, windows_per_vertex * graph_->size()));
-  if (windows_ <= 0) return;
+  windows_ = options.windows;
+  if (windows_ && *windows_ <= 0) return;
   try {
     geodesics_.emplace(surface, surface.flat_approximation());
+    const exact::PolyhedralSurface& triangles = geodesics_->triangles().surface;
+    component_sizes_.resize(static_cast<std::size_t>(triangles.vertex_count()));
+    for (Index v = 0; v < triangles.vertex_count(); ++v) ++component_sizes_[triangles.component(v)];
     if (!geodesics_->triangles().approximate) return;
     triangle_graph_ = std::make_unique<const CsrGraph>(detail::flat_graph(geodesics_->triangles()));
     triangle_one_rings_ = Wavefront::one_rings(*triangle_graph_, options.threads, false);
@@ -191,7 +195,7 @@ class PolarMapSolver::Fronts {
   /// @param errors  whether the front has errors of directions on clouds, which takes a second front
   const Wavefront& around(const Source& source, const Seeds& seeds, const PolarMapOptions& options, bool errors) {
     front_.clear();
-    const auto exact = seeds ? exact_seeds(seeds, options) : ExactGeodesics::Seeds{};
+    const auto exact = seeds ? exact_seeds(source.vertices().front(), seeds, options) : ExactGeodesics::Seeds{};
     if (exact.vertices.empty()) {
       front_.add(source);
       front_.run(options.radius, options.progress.stop);
@@ -222,10 +226,11 @@ class PolarMapSolver::Fronts {
  private:
   /// The vertices that windows reach up to the radius. Empty where windows get lost in needles, or the source is outside of the
   /// triangles.
-  ExactGeodesics::Seeds exact_seeds(const Seeds& seeds, const PolarMapOptions& options) {
+  /// @param source  vertex at the source
+  ExactGeodesics::Seeds exact_seeds(Vertex source, const Seeds& seeds, const PolarMapOptions& options) {
     if (!windows_) windows_.emplace(*solver_.geodesics_);
     ExactMapOptions exact{.radius = options.radius,
-                          .max_windows = solver_.windows_,
+                          .max_windows = solver_.max_windows(source),
                           .frames = options.frames || solver_.graph_->transport_layout().may_reflect(),
                           .progress = options.progress};
     try {
@@ -276,6 +281,11 @@ class PolarMapSolver::Fronts {
   std::optional<Wavefront> over_;  ///< for clouds: over the selected triangles
   std::optional<ExactGeodesics::Workspace> windows_;
 };
+
+Offset PolarMapSolver::max_windows(Vertex source) const {
+  const Offset vertices = component_sizes_[geodesics_->triangles().surface.component(source.index)];
+  return windows_.value_or(std::max(min_windows, windows_per_vertex * vertices));
+}
 
 PolarMapSolver::Seeds PolarMapSolver::seeds_of(Vertex source) const {
   if (!geodesics_) return {};

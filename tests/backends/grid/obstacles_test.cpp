@@ -10,6 +10,7 @@
 #include "ahm/grid/grid_graph.hpp"
 #include "ahm/maps/quality.hpp"
 #include "ahm/maps/wavefront.hpp"
+#include "ahm/util/small_math.hpp"
 #include "ahm/util/vec.hpp"
 
 namespace ahm::test {
@@ -122,6 +123,36 @@ struct Wall {
   double h, middle, top;
   GridGraph graph;
 };
+
+TEST(GridObstacles, AreGoneAroundInThePlane) {
+  // A block on the lower wall. Behind it a path bends by up to a right angle, at one or both of its upper corners.
+  for (const Vec2 from : {Vec2{3, 8}, Vec2{7, 8}, Vec2{3, 6}, Vec2{1, 0}}) {
+    for (const Index n : {1, 2, 4, 8, 16}) {  // edges per unit
+      Grid room{.shape = {12 * n + 1, 8 * n + 1}, .spacing = {1.0 / n, 1.0 / n}};
+      for (Index y = 0; y < 8 * n; ++y)
+        for (Index x = 0; x < 12 * n; ++x) room.blocked.push_back(x >= 4 * n && x < 8 * n && y < 6 * n);
+      const GridGraph graph(room);
+      Wavefront front(graph);
+      front.add(Source::at_vertex(
+          graph.vertex(std::array{static_cast<Index>(from[0] * n), static_cast<Index>(from[1] * n)})));
+      front.run();
+      const Vec2 corner{8, 6};
+      const double to_corner = from[1] >= 6 ? length(corner - from) : length(Vec2{4, 6} - from) + 4;
+      double worst = 0;
+      for (Index i = 0; i < graph.size(); ++i) {
+        const Vec3 at = graph.position(Vertex(i));
+        if (graph.star(i).degree() == 0 || at[0] < 8 || at[1] > 6) continue;
+        const Vec2 away = Vec2{at[0], at[1]} - corner;
+        const double straight = length(corner + away - from);
+        const bool is_seen = from[1] >= 6 && cross(corner - from, away) >= 0;
+        const double expected = is_seen ? straight : to_corner + length(away);
+        ASSERT_GE(front.distance(Vertex(i)), expected * (1 - 1e-12)) << at[0] << " " << at[1];
+        worst = std::max(worst, front.distance(Vertex(i)) / expected - 1);
+      }
+      EXPECT_LT(worst, 0.012 / std::sqrt(n)) << n;  // from squares between both kinds of paths
+    }
+  }
+}
 
 TEST(GridObstacles, AreGoneAroundInSpace) {
   std::vector<double> errors;

@@ -333,8 +333,15 @@ TEST(CloudWarnings, NameSinglePrecisionFarFromTheOrigin) {
     EXPECT_FALSE(is_coarse(grid)) << spacing;
   }
   const auto coarse = PointCloudSurface::build(rounded(far));
-  EXPECT_TRUE(find_warning(coarse, "coarse_coordinates"));
+  ASSERT_TRUE(find_warning(coarse, "coarse_coordinates"));
   EXPECT_EQ(coarse.details().coordinate_step, 1.0 / 32);  // at edges of about 0.04
+  for (int axis = 0; axis < 3; ++axis) {
+    Vec3 away{1e5, 1e5, 1e5};
+    away[axis] = 4e5;
+    const auto shifted = PointCloudSurface::build(rounded(joined({}, points, away)));
+    ASSERT_TRUE(find_warning(shifted, "coarse_coordinates"));
+    EXPECT_EQ(find_warning(shifted, "coarse_coordinates")->name, std::string(1, "xyz"[axis]));
+  }
 }
 
 TEST(CloudMethod, IsHeatOnNoisyCloudsAndOnLayers) {

@@ -85,7 +85,7 @@ double third_side(const TangentGraph& graph, Index vertex, const Neighbor& right
   if (!std::isnan(third)) return third;
   // Without an edge, a narrow angle is the corner of a grid or square, and a wide angle is a gap.
   if (u[0] * v[0] + u[1] * v[1] < -0.5 * right.length * left.length) return open;
-  return graph.is_delaunay() && !have_common_neighbor(graph, right.vertex, left.vertex, vertex) ? open : apart;
+  return have_common_neighbor(graph, right.vertex, left.vertex, vertex) ? apart : open;
 }
 
 /// Cosine and sine of the angle between two sides of a triangle, from its lengths [Kah14]; NaN if there is no triangle.
@@ -130,13 +130,44 @@ void Wavefront::OneRings::find_neighbors(const TangentGraph& graph, Index vertex
   neighbors.erase(std::unique(neighbors.begin(), neighbors.end(), is_same), neighbors.end());
 }
 
+void Wavefront::OneRings::add_far_corners(const TangentGraph& graph, Index vertex, std::vector<Neighbor>& neighbors) {
+  const auto is_neighbor = [&](Index i) {
+    return i == vertex || std::ranges::find(neighbors, i, &Neighbor::vertex) != neighbors.end();
+  };
+  const auto is_as_long = [](double length, double other) { return std::abs(length - other) <= same_length * other; };
+  const auto has_edge = [&](Index from, Index to, double length_of_edge) {
+    const Star star = graph.star(from);
+    for (std::size_t e = 0; e < star.degree(); ++e)
+      if (star.neighbors[e] == to && is_as_long(length(star.log(e)), length_of_edge)) return true;
+    return false;
+  };
+  std::vector<std::pair<Index, bool>> ends;  // of edges as long as the left one, and whether they are reflections
+  for (std::size_t k = 0; k < neighbors.size(); ++k) {
+    const Neighbor right = neighbors[k], left = neighbors[k + 1 < neighbors.size() ? k + 1 : 0];
+    if (right.vertex == left.vertex || cross(right.log, left.log) <= 0) continue;
+    ends.clear();
+    const Star star = graph.star(right.vertex);
+    for (std::size_t e = 0; e < star.degree(); ++e)
+      if (is_as_long(length(star.log(e)), left.length))
+        ends.emplace_back(star.neighbors[e], graph.transport_layout().may_reflect() && star.transport(e).reflects());
+    for (const auto& [far, reflects] : ends) {
+      if (is_neighbor(far) || !has_edge(left.vertex, far, right.length)) continue;
+      const Vec2 log{right.log[0] + left.log[0], right.log[1] + left.log[1]};
+      neighbors.insert(neighbors.begin() + static_cast<std::ptrdiff_t>(++k),
+                       {far, log, length(log), turn(log), right.edge, right.reflects != reflects, true});
+      break;
+    }
+  }
+}
+
 void Wavefront::OneRings::append_corners(const TangentGraph& graph, Index vertex, std::vector<Neighbor>& neighbors,
                                          std::vector<Corner>& corners) {
   find_neighbors(graph, vertex, neighbors);
+  if (!graph.is_delaunay()) add_far_corners(graph, vertex, neighbors);
   for (std::size_t k = 0; k < neighbors.size(); ++k) {
     const Neighbor &right = neighbors[k], &left = neighbors[k + 1 < neighbors.size() ? k + 1 : 0];
     const Vec2 angle = corner(right.length, left.length, third_side(graph, vertex, right, left));
-    corners.push_back({right.vertex, right.reflects, right.length, angle[0], angle[1]});
+    corners.push_back({right.vertex, right.reflects, right.is_far, right.length, angle[0], angle[1]});
   }
 }
 
@@ -266,9 +297,11 @@ class Wavefront::OneRings::Halving {
   /// A corner between two half sides of a triangle with these sides.
   static Corner half(Index neighbor, double right, double left, double across) {
     const Vec2 angle = corner(right, left, across);
-    return {neighbor, false, 0.5 * right, angle[0], angle[1]};
+    return {neighbor, false, false, 0.5 * right, angle[0], angle[1]};
   }
-  Corner open_half(Index neighbor, Offset c) const { return {neighbor, false, 0.5 * corners_[c].length, NAN, NAN}; }
+  Corner open_half(Index neighbor, Offset c) const {
+    return {neighbor, false, false, 0.5 * corners_[c].length, NAN, NAN};
+  }
 
   /// The corner of a vertex between the first halves of two sides.
   Corner half(Offset c) const {

@@ -488,14 +488,22 @@ void Wavefront::Impl::spread(Index from, Index point, double distance) {
   for (std::size_t k = 0; k < degree; ++k) {
     const Entry* entry = find(corners[k].neighbor, point);
     const double before = entry ? entry->distance : std::numeric_limits<double>::infinity();
-    const double along = distance + corners[k].length;
+    // The source has no direction; from it the far corner of a square is found across the sides.
+    const bool is_direct = distance > 0 || !corners[k].is_far;
+    const double along = is_direct ? distance + corners[k].length : std::numeric_limits<double>::infinity();
     NeighborState& known = states_[k];
     known.is_new = !(before <= along);
     known.distance = known.is_new ? along : before;
     known.along = along;
-    known.focusing = known.is_new ? focusing_along(corners[k], along) : entry->focusing;
+    known.focusing = known.is_new ? focusing_along(corners[k], along) : entry ? entry->focusing : 0;
     if (directions_) {
-      known.path = known.is_new ? Path{own.direction, {}, {from, from}, 0, own.variance} : path_of(entry);
+      known.path = known.is_new ? Path{own.direction, {}, {from, from}, 0, own.variance}
+                   : entry      ? path_of(entry)
+                                : Path{};
+      if (known.is_new && corners[k].is_far) {  // through the middle between the other corners of the square
+        known.path.last = {corners[k - 1].neighbor, corners[k + 1 < degree ? k + 1 : 0].neighbor};
+        known.path.share = 0.5F;
+      }
       if (known.is_new && is_curved_)
         known.path.widening = own.widening + widening_between(distance, focusing, along, known.focusing);
     }

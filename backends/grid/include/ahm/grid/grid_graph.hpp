@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "ahm/graph/tangent_graph.hpp"
+#include "ahm/maps/log_map.hpp"
 #include "ahm/maps/source.hpp"
 
 namespace ahm::grid {
@@ -73,6 +74,9 @@ class GridGraph final : public TangentGraph {
   Source source_at(std::span<const double> point) const;
 
   const Grid& grid() const noexcept { return grid_; }
+
+  /// As `Surface::suggested_method`: polar in the plane, heat in space.
+  Method suggested_method() const { return dimension_ == 2 ? Method::polar : Method::heat; }
 
  private:
   using Steps = std::array<Index, 3>;

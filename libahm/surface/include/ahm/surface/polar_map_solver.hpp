@@ -14,6 +14,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "ahm/graph/csr_graph.hpp"
 #include "ahm/maps/local_maps.hpp"
@@ -24,8 +25,8 @@
 namespace ahm {
 
 struct PolarSolverOptions {
-  /// Number of exact windows around the source per map. 0: none; the front starts at the source. Default: 8 per vertex, at
-  /// least 131,072, which take about as long as the front.
+  /// Number of exact windows around the source per map. 0: none; the front starts at the source. Default: 8 per vertex of the
+  /// source's component, at least 131,072, which take about as long as the front.
   std::optional<Offset> windows = {};
   unsigned threads = 0;  ///< threads that build the one-rings; 0: one per core. No result depends on it
 };
@@ -80,6 +81,8 @@ class PolarMapSolver {
   class Fronts;
   /// Computes polar coordinates around a source by exact windows.
   using Seeds = std::function<ExactGeodesics::Seeds(const ExactMapOptions&, ExactGeodesics::Workspace&)>;
+  /// Number of windows for a source at this vertex.
+  Offset max_windows(Vertex source) const;
   Seeds seeds_of(Vertex source) const;
   Seeds seeds_of(const SurfacePoint& source, const std::optional<Vec3>& u_axis) const;
   LogMap log_map(const Source& source, const PolarMapOptions& options, const Seeds& seeds) const;
@@ -93,7 +96,8 @@ class PolarMapSolver {
   std::unique_ptr<const CsrGraph> triangle_graph_;
   std::shared_ptr<const Wavefront::OneRings> triangle_one_rings_;
   std::optional<ExactGeodesics> geodesics_;  ///< none: no flat triangles, or windows disabled
-  Offset windows_ = 0;
+  std::optional<Offset> windows_;            ///< as in the options
+  std::vector<Index> component_sizes_;       ///< number of vertices by `PolyhedralSurface::component`
 };
 
 /// The method for log maps on a graph without a surface (else `Surface::suggested_method`): polar on Delaunay triangulations,
