@@ -117,6 +117,21 @@ TEST(PolarMap, DoesNotDependOnTheNumberOfThreads) {
   EXPECT_EQ(relative_difference(a, b), 0);
 }
 
+TEST(PolarMap, DoesNotDependOnOtherComponents) {
+  Mesh mesh = torus(20000);  // more vertices than the least number of windows serves
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> offset(-1e-3, 1e-3);
+  for (Vec3& p : mesh.positions)
+    p = p + Vec3{offset(random), offset(random), offset(random)};  // no paths of equal length
+  const auto alone = surface_of(mesh), together = surface_of(joined(mesh, torus(5000), {9, 9, 9}));
+  const RowLogMap a = alone.to_rows(PolarMapSolver(alone).log_map(Row(4))),
+                  b = together.to_rows(PolarMapSolver(together).log_map(Row(4)));
+  for (std::size_t i = 0; i < a.u.size(); ++i) {
+    ASSERT_NEAR(a.u[i], b.u[i], 1e-12) << i;
+    ASSERT_NEAR(a.v[i], b.v[i], 1e-12) << i;
+  }
+}
+
 // ------------------------------------------------------------------------------------------------ exact maps
 
 TEST(PolarMap, IsTheExactMapWhereWindowsReach) {

@@ -173,9 +173,6 @@ PolarMapSolver::PolarMapSolver(const Surface& surface, const PolarSolverOptions&
   if (windows_ && *windows_ <= 0) return;
   try {
     geodesics_.emplace(surface, surface.flat_approximation());
-    const exact::PolyhedralSurface& triangles = geodesics_->triangles().surface;
-    component_sizes_.resize(static_cast<std::size_t>(triangles.vertex_count()));
-    for (Index v = 0; v < triangles.vertex_count(); ++v) ++component_sizes_[triangles.component(v)];
     if (!geodesics_->triangles().approximate) return;
     triangle_graph_ = std::make_unique<const CsrGraph>(detail::flat_graph(geodesics_->triangles()));
     triangle_one_rings_ = Wavefront::one_rings(*triangle_graph_, options.threads, false);
@@ -283,7 +280,8 @@ class PolarMapSolver::Fronts {
 };
 
 Offset PolarMapSolver::max_windows(Vertex source) const {
-  const Offset vertices = component_sizes_[geodesics_->triangles().surface.component(source.index)];
+  const exact::PolyhedralSurface& triangles = geodesics_->triangles().surface;
+  const Offset vertices = triangles.component_details(triangles.component(source.index)).vertices;
   return windows_.value_or(std::max(min_windows, windows_per_vertex * vertices));
 }
 

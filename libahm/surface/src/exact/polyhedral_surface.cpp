@@ -87,7 +87,6 @@ PolyhedralSurface::PolyhedralSurface(const HalfEdges& edges, const std::function
   if (std::ranges::min(edges.tail) < 0) throw InvalidGeometry("a tail is negative; vertices are numbered from 0");
   face_.resize(edges.tail.size() / 3);
   for (Index f = 0; f < face_count(); ++f) set_face(f, edges, sides_of(f));
-  mean_length_ /= static_cast<double>(edges.size());
   check_lengths();
   set_fans(edges, corners);
 }
@@ -120,7 +119,6 @@ void PolyhedralSurface::set_face(Index face, const HalfEdges& edges, const FaceS
     f.tail[s] = edges.tail[h];
     f.beyond[s] = std::max(edges.twin[h], -1);
     f.mirrored |= static_cast<std::uint8_t>(edges.is_mirrored(h) << s);
-    mean_length_ += length[s];
   }
 }
 
@@ -168,8 +166,25 @@ void PolyhedralSurface::set_fans(const HalfEdges& edges, std::span<const Half> c
     if (met != corners_at[v])
       throw InvalidGeometry("vertex " + std::to_string(v) + " joins several fans of faces; split it");
   }
-  component_.resize(corner_.size());
-  for (Index v = 0; v < vertices; ++v) component_[v] = parts.root(v);
+  set_components(parts);
+}
+
+void PolyhedralSurface::set_components(detail::DisjointSets& parts) {
+  component_.assign(corner_.size(), -1);
+  for (Index v = 0; v < vertex_count(); ++v) {
+    Index& number = component_[parts.root(v)];
+    if (number < 0) number = static_cast<Index>(components_.size()), components_.emplace_back();
+    component_[v] = number;
+    ++components_[number].vertices;
+  }
+  std::vector<Offset> sides(components_.size(), 0);
+  for (const Face& face : face_)
+    for (int s = 0; s < 3; ++s) {
+      components_[component_[face.tail[s]]].mean_length += face.length[s];
+      ++sides[component_[face.tail[s]]];
+    }
+  for (std::size_t c = 0; c < components_.size(); ++c)
+    if (sides[c] > 0) components_[c].mean_length /= static_cast<double>(sides[c]);
 }
 
 bool PolyhedralSurface::bends_paths(Index v) const { return on_boundary(v) || angle_sum_[v] > 2 * pi + flat_excess; }

@@ -43,8 +43,8 @@ Propagation::Propagation(const PolyhedralSurface& surface, const ExactOptions& o
       target_distance_(targets.size(), infinity),
       reached_(distance_.size() + targets.size()),
       apex_arrivals_(3 * static_cast<std::size_t>(surface.face_count()), ApexArrival{infinity, 0}),
-      windows_(bucket_width * surface.mean_length()),
-      bends_(bucket_width * surface.mean_length()) {
+      windows_(1),
+      bends_(1) {
   place_targets(targets);
 }
 
@@ -65,6 +65,12 @@ void Propagation::place_targets(std::span<const MeshPoint> targets) {
 // ---------------------------------------------------------------------------------------------- sources
 
 void Propagation::add_source(const MeshPoint& point) {
+  if (origins_.empty()) {  // other components do not determine the buckets
+    const Index component = surface_.component(surface_.record(3 * point.face).tail);
+    const double width = bucket_width * surface_.component_details(component).mean_length;
+    windows_.clear(width);
+    bends_.clear(width);
+  }
   const auto number = static_cast<Index>(origins_.size());
   origins_.push_back({.source = number});
   sources_ = origins_.size();
@@ -452,8 +458,6 @@ void Propagation::clear(const ExactOptions& options) {
   window_count_ = 0;
   horizon_ = options.radius;
   max_windows_ = options.max_windows;
-  windows_.clear(bucket_width * surface_.mean_length());
-  bends_.clear(bucket_width * surface_.mean_length());
 }
 
 PropagationResult Propagation::found() && {

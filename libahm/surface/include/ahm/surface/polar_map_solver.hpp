@@ -14,7 +14,6 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <vector>
 
 #include "ahm/graph/csr_graph.hpp"
 #include "ahm/maps/local_maps.hpp"
@@ -97,7 +96,6 @@ class PolarMapSolver {
   std::shared_ptr<const Wavefront::OneRings> triangle_one_rings_;
   std::optional<ExactGeodesics> geodesics_;  ///< none: no flat triangles, or windows disabled
   std::optional<Offset> windows_;            ///< as in the options
-  std::vector<Index> component_sizes_;       ///< number of vertices by `PolyhedralSurface::component`
 };
 
 /// The method for log maps on a graph without a surface (else `Surface::suggested_method`): polar on Delaunay triangulations,

@@ -16,6 +16,10 @@
 #include "ahm/surface/detail/half_edges.hpp"
 #include "ahm/types.hpp"
 
+namespace ahm::detail {
+class DisjointSets;
+}
+
 namespace ahm::exact {
 
 using detail::Corner;
@@ -94,9 +98,13 @@ class PolyhedralSurface {
   /// Factor from angles on the surface to angles in the tangent space, as in the frames of the triangle backend: 2 pi / angle
   /// sum at interior vertices, 1 on the boundary.
   double angle_scale(Index vertex) const;
+  /// Number of the vertex' connected component, from 0.
   Index component(Index vertex) const { return component_[vertex]; }
-  /// Mean length of the sides of all faces.
-  double mean_length() const noexcept { return mean_length_; }
+  struct Component {
+    Index vertices = 0;
+    double mean_length = 0;  ///< of the sides of all faces
+  };
+  const Component& component_details(Index component) const { return components_[component]; }
 
   /// The neighboring corner across the last (left) or first (right) side in counterclockwise order; half < 0: boundary.
   Corner turn_left(Corner c) const { return beyond(c.forward ? previous(c.half) : c.half, !c.forward, c.forward); }
@@ -134,13 +142,14 @@ class PolyhedralSurface {
   void set_face(Index face, const HalfEdges& edges, const FaceSides& sides);
   void check_lengths() const;
   void set_fans(const HalfEdges& edges, std::span<const Half> corners);
+  void set_components(detail::DisjointSets& parts);
 
   std::vector<Face> face_;
   std::vector<double> angle_sum_;
   std::vector<std::uint8_t> on_boundary_;
   std::vector<Corner> corner_;
   std::vector<Index> component_;
-  double mean_length_ = 0;
+  std::vector<Component> components_;
 };
 
 }  // namespace ahm::exact
