@@ -82,7 +82,8 @@ constexpr Sentence sentences[] = {
     {"near_duplicates",
      "{0:.0f} [point was|points were] merged with another point that is much closer than the spacing"},
     {"coarse_coordinates",
-     "the coordinates have single precision: so far from the origin the resolution of {4} is {0:.3g}, and the mean edge "
+     "the coordinates have single precision: so far from the origin the resolution of {4} is {0:.3g}, and the mean "
+     "edge "
      "length is {1:.3g}; export them in double precision, or shift them to the origin first"},
     {"layers",
      "the points lie in layers {0:.3g} apart, which is less than the spacing, and are mapped as one surface; this is "
