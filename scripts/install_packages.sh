@@ -26,12 +26,12 @@ tests=(
   libcgal-dev python3-matplotlib                              # exact distances and plots of the experiments
   libpetsc-real-dev libopenmpi-dev openmpi-bin                # ahm-mpi: maps on many machines
   chromium chromium-driver python3-selenium                   # the viewer in a browser
-  pybind11-dev python3-pybind11 python3-dev python3-numpy python3-scipy python3-pytest mypy  # the Python package and its tests
+  pybind11-dev python3-pybind11 python3-dev python3-numpy python3-scipy python3-pytest mypy python3-torch  # the Python package and its tests
 )
 checks=("${tests[@]}" clang libclang-rt-14-dev clang-format clang-tidy)
 debian=("${tests[@]}" dpkg-dev pkg-config file debootstrap)
 docs=("${tests[@]}" doxygen python3-sphinx python3-myst-parser furo python3-sphinx-copybutton linkchecker pngquant)
-parity=("${tests[@]}" python3-vtk9 python3-open3d python3-nibabel connectome-workbench python3-pandas python3-torch)
+parity=("${tests[@]}" python3-vtk9 python3-open3d python3-nibabel connectome-workbench python3-pandas)
 web=(cmake ninja-build libeigen3-dev libnanoflann-dev clang-19 lld-19 wasi-libc libc++-19-dev-wasm32 libc++abi-19-dev-wasm32 libclang-rt-19-dev-wasm32)
 case "${1:-tests}" in
   program) packages=("${program[@]}") ;;

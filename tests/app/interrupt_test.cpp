@@ -123,7 +123,7 @@ TEST_F(Scarce, DiskIsReported) {
 
 // The libraries use 110 MB of address space, each of the buffers of BLAS 128 MB.
 TEST_F(Scarce, MemoryIsReported) {
-  write("sphere.xyz", xyz(sphere(4000)));
+  write("sphere.xyz", xyz(sphere(2000)));
   int refused = 0, done = 0;
   for (const rlim_t megabytes : {250, 350, 500, 700, 1600})
     for (const char* command :

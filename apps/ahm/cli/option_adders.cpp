@@ -152,10 +152,14 @@ void add_cloud_options(CLI::App& app, InputOptions& o) {
              "Library of the neighbor search: nanoflann (default), flann or pcl")
       ->group(group);
   add_normals(app, o)->group(group);
-  add_parsed(app, "--smooth", o.smooth, parse_smoothing, "auto|off|RADIUS",
-             "Smooth the points before the map: auto (default: only where the cloud is noisy), off, or all points\n"
-             "over neighborhoods of this radius")
-      ->group(group);
+  add_smooth(app, o)->group(group);
+}
+
+CLI::Option* add_smooth(CLI::App& app, InputOptions& o) {
+  return add_parsed(
+      app, "--smooth", o.smooth, parse_smoothing, "auto|off|RADIUS",
+      "Smooth the points before the map: auto (default: only where the cloud is noisy), off, or all points\n"
+      "over neighborhoods of this radius");
 }
 
 CLI::Option* add_normals(CLI::App& app, InputOptions& o) {

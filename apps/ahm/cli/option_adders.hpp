@@ -84,6 +84,7 @@ CLI::Option* add_non_manifold(CLI::App& app, InputOptions& o);
 /// Adds the options for building a graph from points: --voxel, --outliers, --drop-nan, --k, --knn, --normals, --smooth.
 void add_cloud_options(CLI::App& app, InputOptions& o);
 CLI::Option* add_normals(CLI::App& app, InputOptions& o);
+CLI::Option* add_smooth(CLI::App& app, InputOptions& o);
 /// Adds --local.
 /// @param radius  start of the help text, how far the graph reaches: "Up to --radius"
 void add_local(CLI::App& app, InputOptions& o, const std::string& radius);

@@ -220,7 +220,9 @@ void offer(CLI::App& app, LocalMapsOptions& o) {
   add_variant(app, o.solve);
   add_backend(app, o.input);
   add_t_coef(app, o.solve);
-  add_cloud_options(app, o.input);
+  add_drop_nan(app, o.input);
+  add_normals(app, o.input);
+  add_smooth(app, o.input);
   add_mesh_options(app, o.input);
   add_threads(app, o.input, &o.solve);
   add_json(app, o.output);

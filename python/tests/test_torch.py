@@ -1,0 +1,104 @@
+"""Local maps as tensors. Skipped without torch."""
+
+import copy
+import types
+
+import numpy as np
+import pytest
+
+import ahm
+
+torch = pytest.importorskip("torch")
+import ahm.torch  # noqa: E402
+
+
+@pytest.fixture(scope="module")
+def sphere():
+    return ahm.TriangleMesh(*ahm.shapes.sphere(3))
+
+
+@pytest.fixture(scope="module")
+def plane():
+    return ahm.TriangleMesh(*ahm.shapes.plane(12, 9))
+
+
+def as_data(positions, faces=None):
+    data = types.SimpleNamespace(pos=torch.from_numpy(np.array(positions, float)))
+    if faces is not None:
+        data.face = torch.from_numpy(np.ascontiguousarray(np.asarray(faces, np.int64).T))
+    return data
+
+
+def test_edges_are_the_entries_of_the_maps(sphere):
+    maps = ahm.local_maps(sphere, 0.4)
+    found = ahm.torch.edges(maps)
+    assert found.edge_index.dtype == torch.int64 and found.log.dtype == torch.float32 and found.transport.dtype == torch.complex64
+    np.testing.assert_array_equal(found.edge_index, maps.edge_index())
+    np.testing.assert_allclose(found.log, maps.log, atol=1e-6)
+    np.testing.assert_allclose(found.distance, maps.distance, atol=1e-6)
+    np.testing.assert_allclose(found.weight, maps.weight, rtol=1e-6)
+    assert ahm.torch.edges(ahm.local_maps(sphere, 0.4, transport=False)).transport is None
+
+
+def test_messages_of_a_constant_field_on_a_plane_agree(plane):
+    """Vectors of the neighbors, transported to the source, are the vector there."""
+    found = ahm.torch.edges(ahm.local_maps(plane, k=20))
+    axes = torch.from_numpy(plane.frames).float()
+    vector = torch.tensor([0.3, -0.7, 0.0]).expand(len(axes), 3)
+    components = torch.complex((axes[:, 0] * vector).sum(1), (axes[:, 1] * vector).sum(1))
+    neighbor, source = found.edge_index
+    torch.testing.assert_close(components[neighbor] * found.transport, components[source], rtol=1e-5, atol=1e-5)
+
+
+def test_the_direction_back_is_the_opposite_one(sphere):
+    """At j the source i lies in the direction opposite to that of j at i, transported along the path between them."""
+    found = ahm.torch.edges(ahm.local_maps(sphere, 0.3))
+    at = {(int(j), int(i)): e for e, (j, i) in enumerate(found.edge_index.T)}
+    log = torch.complex(found.log[:, 0], found.log[:, 1])
+    back = [at[i, j] for j, i in at]
+    here = found.distance > 0
+    difference = (log[back] * found.transport + log).abs()[here] / found.distance[here]
+    assert difference.median() < 0.02
+
+
+def test_a_transform_fills_data_of_meshes_and_clouds(sphere):
+    transform = ahm.torch.LocalMaps(k=12)
+    mesh = transform(as_data(sphere.points, sphere.faces))
+    expected = ahm.torch.edges(ahm.local_maps(sphere, k=12))
+    for name in ("edge_index", "log", "transport", "distance", "weight"):
+        torch.testing.assert_close(getattr(mesh, name), getattr(expected, name))
+    cloud = transform(as_data(sphere.points))
+    torch.testing.assert_close(cloud.log, ahm.torch.edges(ahm.local_maps(ahm.PointCloud(sphere.points), k=12)).log)
+    assert repr(copy.deepcopy(transform)) == "ahm.torch.LocalMaps(k=12, threads=0, method='auto')"
+
+
+def test_rows_without_a_vertex_have_no_edges(plane):
+    positions = np.vstack([plane.points, [[50.0, 50, 50]]])
+    data = ahm.torch.LocalMaps(radius=2.0)(as_data(positions, plane.faces))
+    assert int(data.edge_index.max()) == len(plane.points) - 1
+    assert all(bool(torch.isfinite(t).all()) for t in (data.log, data.transport.real, data.distance, data.weight))
+
+
+def test_arguments_are_named(sphere):
+    with pytest.raises(ValueError, match="radius: missing"):
+        ahm.torch.LocalMaps()
+    with pytest.raises(ValueError, match="not a row"):
+        ahm.torch.edges(ahm.local_maps(sphere, 0.3, sources=sphere.points[:2] * 0.99))
+    with pytest.raises(ValueError, match="dimension 2"):
+        ahm.torch.edges(ahm.local_maps(ahm.Grid((4, 4, 4)), 1.5))
+    band = ahm.TriangleMesh(*moebius_band())
+    with pytest.raises(ValueError, match="orientable"):
+        ahm.torch.edges(ahm.local_maps(band, 0.5))
+
+
+def moebius_band(n=40, m=4):
+    turn, across = np.meshgrid(np.arange(n), np.arange(m), indexing="ij")
+    u, v = 2 * np.pi * turn.ravel() / n, 0.4 * (across.ravel() / (m - 1) - 0.5)
+    positions = np.stack([(1 + v * np.cos(u / 2)) * np.cos(u), (1 + v * np.cos(u / 2)) * np.sin(u), v * np.sin(u / 2)], axis=1)
+    faces = []
+    for i in range(n):
+        for k in range(m - 1):
+            a, b = i * m + k, i * m + k + 1
+            c, d = ((i + 1) * m + k, (i + 1) * m + k + 1) if i + 1 < n else (m - 1 - k, m - 2 - k)
+            faces += [(a, c, b), (b, c, d)]
+    return positions, np.array(faces)
