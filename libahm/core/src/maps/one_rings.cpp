@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 #include "ahm/graph/components.hpp"
@@ -67,25 +68,55 @@ bool have_common_neighbor(const TangentGraph& graph, Index a, Index b, Index exc
   });
 }
 
-/// Length of the third side of the triangle of a vertex and two successive neighbors; NaN if there is no triangle between them.
+/// Length of the edge between two successive neighbors of a vertex; NaN if there is none.
 template <class Neighbor>
-double third_side(const TangentGraph& graph, Index vertex, const Neighbor& right, const Neighbor& left) {
-  const double open = std::numeric_limits<double>::quiet_NaN();
-  const Vec2 &u = right.log, &v = left.log;
-  if (right.vertex == left.vertex || cross(u, v) <= 0) return open;
-  const double apart = length(Vec2{u[0] - v[0], u[1] - v[1]});
+double edge_between(const TangentGraph& graph, const Neighbor& right, const Neighbor& left, double apart) {
   const bool by_right = graph.star(right.vertex).degree() <= graph.star(left.vertex).degree();
   const Star star = graph.star(by_right ? right.vertex : left.vertex);
-  double third = open;  // of several edges the one whose length fits best in the tangent plane
+  double third = NAN;  // of several edges the one whose length fits best in the tangent plane
   for (std::size_t e = 0; e < star.degree(); ++e) {
     if (star.neighbors[e] != (by_right ? left.vertex : right.vertex)) continue;
     const double side = length(star.log(e));
     if (!(std::abs(side - apart) >= std::abs(third - apart))) third = side;
   }
-  if (!std::isnan(third)) return third;
-  // Without an edge, a narrow angle is the corner of a grid or square, and a wide angle is a gap.
-  if (u[0] * v[0] + u[1] * v[1] < -0.5 * right.length * left.length) return open;
-  return have_common_neighbor(graph, right.vertex, left.vertex, vertex) ? apart : open;
+  return third;
+}
+
+/// Whether two successive neighbors without an edge between them are corners of a square or another polygon with the vertex. A
+/// wide angle is a gap.
+template <class Neighbor>
+bool are_in_polygon(const TangentGraph& graph, Index vertex, const Neighbor& right, const Neighbor& left) {
+  const Vec2 &u = right.log, &v = left.log;
+  return u[0] * v[0] + u[1] * v[1] >= -0.5 * right.length * left.length &&
+         have_common_neighbor(graph, right.vertex, left.vertex, vertex);
+}
+
+/// The fourth corner of a parallelogram.
+struct FarCorner {
+  Index vertex;
+  bool reflects;  ///< whether the transport to it along two sides is a reflection
+};
+
+/// The corner opposite to a vertex in its parallelogram with two successive neighbors; nullopt if there is none, or if it is a
+/// neighbor, too.
+template <class Neighbor>
+std::optional<FarCorner> far_corner(const TangentGraph& graph, std::span<const Neighbor> neighbors, Index vertex,
+                                    const Neighbor& right, const Neighbor& left) {
+  const auto has_length = [](const Star& star, std::size_t e, double expected) {
+    return std::abs(length(star.log(e)) - expected) <= same_length * expected;
+  };
+  const bool may_reflect = graph.transport_layout().may_reflect();
+  for (std::size_t e = 0; e < graph.star(right.vertex).degree(); ++e) {
+    const Star beside = graph.star(right.vertex);  // again, because the loop requests another star
+    const Index far = beside.neighbors[e];
+    if (far == vertex || !has_length(beside, e, left.length)) continue;
+    if (std::ranges::find(neighbors, far, &Neighbor::vertex) != neighbors.end()) continue;
+    const bool reflects = right.reflects != (may_reflect && beside.transport(e).reflects());
+    const Star other = graph.star(left.vertex);
+    for (std::size_t k = 0; k < other.degree(); ++k)
+      if (other.neighbors[k] == far && has_length(other, k, right.length)) return FarCorner{far, reflects};
+  }
+  return std::nullopt;
 }
 
 /// Cosine and sine of the angle between two sides of a triangle, from its lengths [Kah14]; NaN if there is no triangle.
@@ -130,44 +161,33 @@ void Wavefront::OneRings::find_neighbors(const TangentGraph& graph, Index vertex
   neighbors.erase(std::unique(neighbors.begin(), neighbors.end(), is_same), neighbors.end());
 }
 
-void Wavefront::OneRings::add_far_corners(const TangentGraph& graph, Index vertex, std::vector<Neighbor>& neighbors) {
-  const auto is_neighbor = [&](Index i) {
-    return i == vertex || std::ranges::find(neighbors, i, &Neighbor::vertex) != neighbors.end();
-  };
-  const auto is_as_long = [](double length, double other) { return std::abs(length - other) <= same_length * other; };
-  const auto has_edge = [&](Index from, Index to, double length_of_edge) {
-    const Star star = graph.star(from);
-    for (std::size_t e = 0; e < star.degree(); ++e)
-      if (star.neighbors[e] == to && is_as_long(length(star.log(e)), length_of_edge)) return true;
-    return false;
-  };
-  std::vector<std::pair<Index, bool>> ends;  // of edges as long as the left one, and whether they are reflections
-  for (std::size_t k = 0; k < neighbors.size(); ++k) {
-    const Neighbor right = neighbors[k], left = neighbors[k + 1 < neighbors.size() ? k + 1 : 0];
-    if (right.vertex == left.vertex || cross(right.log, left.log) <= 0) continue;
-    ends.clear();
-    const Star star = graph.star(right.vertex);
-    for (std::size_t e = 0; e < star.degree(); ++e)
-      if (is_as_long(length(star.log(e)), left.length))
-        ends.emplace_back(star.neighbors[e], graph.transport_layout().may_reflect() && star.transport(e).reflects());
-    for (const auto& [far, reflects] : ends) {
-      if (is_neighbor(far) || !has_edge(left.vertex, far, right.length)) continue;
-      const Vec2 log{right.log[0] + left.log[0], right.log[1] + left.log[1]};
-      neighbors.insert(neighbors.begin() + static_cast<std::ptrdiff_t>(++k),
-                       {far, log, length(log), turn(log), right.edge, right.reflects != reflects, true});
-      break;
-    }
-  }
-}
-
 void Wavefront::OneRings::append_corners(const TangentGraph& graph, Index vertex, std::vector<Neighbor>& neighbors,
                                          std::vector<Corner>& corners) {
   find_neighbors(graph, vertex, neighbors);
-  if (!graph.is_delaunay()) add_far_corners(graph, vertex, neighbors);
   for (std::size_t k = 0; k < neighbors.size(); ++k) {
     const Neighbor &right = neighbors[k], &left = neighbors[k + 1 < neighbors.size() ? k + 1 : 0];
-    const Vec2 angle = corner(right.length, left.length, third_side(graph, vertex, right, left));
-    corners.push_back({right.vertex, right.reflects, right.is_far, right.length, angle[0], angle[1]});
+    const auto append = [&](double third) {
+      const Vec2 angle = corner(right.length, left.length, third);
+      corners.push_back({right.vertex, right.reflects, false, right.length, angle[0], angle[1]});
+    };
+    const bool is_open = right.vertex == left.vertex || cross(right.log, left.log) <= 0;
+    const double apart = length(right.log - left.log);
+    const double edge = is_open ? NAN : edge_between(graph, right, left, apart);
+    if (is_open || !std::isnan(edge) || !are_in_polygon(graph, vertex, right, left)) {
+      append(edge);
+      continue;
+    }
+    // Only along edges, a path that turns at a corner of a grid would be longer. Curved fronts need triangles.
+    const auto far = graph.is_delaunay() ? std::nullopt : far_corner<Neighbor>(graph, neighbors, vertex, right, left);
+    if (!far) {
+      append(apart);
+      continue;
+    }
+    const double diagonal = length(right.log + left.log);
+    const Vec2 to_far = corner(right.length, diagonal, left.length),
+               to_left = corner(diagonal, left.length, right.length);
+    corners.push_back({right.vertex, right.reflects, false, right.length, to_far[0], to_far[1]});
+    corners.push_back({far->vertex, far->reflects, true, diagonal, to_left[0], to_left[1]});
   }
 }
 

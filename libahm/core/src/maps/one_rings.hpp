@@ -32,7 +32,6 @@ class Wavefront::OneRings {
     double length, turn;
     std::size_t edge;
     bool reflects;
-    bool is_far = false;  ///< as in `Corner`; `edge` is then that of the neighbor to the right
   };
 
   /// @param halved  for each vertex whether its triangles are cut; equal within a connected component. Flat components stay whole. So do
@@ -74,8 +73,6 @@ class Wavefront::OneRings {
 
   /// Finds the neighbors of a vertex, counterclockwise.
   static void find_neighbors(const TangentGraph& graph, Index vertex, std::vector<Neighbor>& neighbors);
-  /// Adds the far corners of squares without diagonals. Only along edges, a path that turns at a corner of a grid would be longer.
-  static void add_far_corners(const TangentGraph& graph, Index vertex, std::vector<Neighbor>& neighbors);
 
   Index vertices_, size_;
   bool all_ = false;  ///< whether the corners of all points are stored
