@@ -296,7 +296,7 @@ ExactGeodesics::Seeds ExactGeodesics::seeds(const PlacedSources& from, const Exa
   exact::Propagation& windows = *workspace.windows_;
   windows.clear(window_options(options));
   const exact::MeshPoint source = exact::checked(flat_.surface, from.points[0], "source");
-  windows.add_source(source);
+  windows.add_sources(std::span(&source, 1));
   windows.run(options.progress);
   windows.check_reached();
   const Index vertex = windows.origin(0).vertex;

@@ -30,15 +30,10 @@ void check(const PolyhedralSurface& surface, std::span<const MeshPoint> sources,
 PropagationResult propagate(const PolyhedralSurface& surface, std::span<const MeshPoint> sources,
                             std::span<const MeshPoint> targets, const ExactOptions& options) {
   Propagation windows(surface, options, targets);
-  for (const MeshPoint& p : sources) windows.add_source(p);
+  windows.add_sources(sources);
   windows.run(options.progress);
   windows.check_reached();
   return std::move(windows).found();
-}
-
-/// The component of a point, as the number of the vertex that represents it.
-Index component_of(const PolyhedralSurface& surface, const MeshPoint& point) {
-  return surface.component(surface.record(3 * point.face).tail);
 }
 
 }  // namespace
@@ -52,7 +47,7 @@ class MapBuilder {
     map_.targets_ = std::move(targets);
     map_.vertices_ = static_cast<std::size_t>(surface.vertex_count());
     has_source_.assign(map_.vertices_, 0);
-    for (const MeshPoint& p : map_.sources_) has_source_[component_of(surface, p)] = 1;
+    for (const MeshPoint& p : map_.sources_) has_source_[surface.component(p)] = 1;
   }
 
   ExactMap build(PropagationResult found) {
@@ -66,7 +61,7 @@ class MapBuilder {
     for (std::size_t v = 0; v < map_.vertices_; ++v)
       add(found.distance[v], surface_.component(static_cast<Index>(v)), found.horizon, found.reached[v]);
     for (std::size_t k = 0; k < map_.targets_.size(); ++k)
-      add(found.target_distance[k], component_of(surface_, map_.targets_[k]), found.horizon,
+      add(found.target_distance[k], surface_.component(map_.targets_[k]), found.horizon,
           found.reached[map_.vertices_ + k]);
     for (Origin& origin : map_.origins_) origin.direction = scaled(origin.direction, origin.source);
     return std::move(map_);

@@ -610,8 +610,7 @@ GeodesicPath locally_shortest_path(const PolyhedralSurface& surface, const MeshP
     curve.push_back(end);
     return shortened_path(surface, curve);
   }
-  const auto component = [&](const MeshPoint& p) { return surface.component(surface.record(3 * p.face).tail); };
-  if (component(start) != component(end)) {
+  if (surface.component(start) != surface.component(end)) {
     GeodesicPath none;
     none.status = Status::disconnected;
     return none;

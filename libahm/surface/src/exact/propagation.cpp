@@ -42,9 +42,7 @@ Propagation::Propagation(const PolyhedralSurface& surface, const ExactOptions& o
       distance_(static_cast<std::size_t>(surface.vertex_count()), infinity),
       target_distance_(targets.size(), infinity),
       reached_(distance_.size() + targets.size()),
-      apex_arrivals_(3 * static_cast<std::size_t>(surface.face_count()), ApexArrival{infinity, 0}),
-      windows_(1),
-      bends_(1) {
+      apex_arrivals_(3 * static_cast<std::size_t>(surface.face_count()), ApexArrival{infinity, 0}) {
   place_targets(targets);
 }
 
@@ -64,13 +62,17 @@ void Propagation::place_targets(std::span<const MeshPoint> targets) {
 
 // ---------------------------------------------------------------------------------------------- sources
 
+void Propagation::add_sources(std::span<const MeshPoint> points) {
+  // Components without a source do not determine the buckets. In buckets that are too wide the order of windows is lost.
+  double edge = infinity;
+  for (const MeshPoint& point : points)
+    edge = std::min(edge, surface_.component_details(surface_.component(point)).mean_length);
+  windows_.clear(bucket_width * edge);
+  bends_.clear(bucket_width * edge);
+  for (const MeshPoint& point : points) add_source(point);
+}
+
 void Propagation::add_source(const MeshPoint& point) {
-  if (origins_.empty()) {  // other components do not determine the buckets
-    const Index component = surface_.component(surface_.record(3 * point.face).tail);
-    const double width = bucket_width * surface_.component_details(component).mean_length;
-    windows_.clear(width);
-    bends_.clear(width);
-  }
   const auto number = static_cast<Index>(origins_.size());
   origins_.push_back({.source = number});
   sources_ = origins_.size();

@@ -59,9 +59,9 @@ class BucketQueue {
     Item items[per_chunk];
   };
 
-  explicit BucketQueue(double width) : inverse_width_(1 / width), first_(ring, none) {}
+  BucketQueue() : first_(ring, none) {}
 
-  /// Removes all items and begins at the first bucket. Keeps the memory.
+  /// Removes all items and begins at the first bucket, with buckets of this width. Keeps the memory. Call it before `push`.
   void clear(double width) {
     for (std::uint32_t& head : first_) {
       if (size_ == 0) break;
@@ -129,7 +129,7 @@ class BucketQueue {
     return taken;
   }
 
-  double inverse_width_;
+  double inverse_width_ = 1;
   std::uint64_t bucket_ = 0;
   std::vector<std::uint32_t> first_;  ///< top chunk of each bucket in the ring
   std::vector<std::unique_ptr<Chunk>> chunks_;
@@ -227,13 +227,13 @@ struct PropagationResult {
   ExactStatistics statistics;
 };
 
-/// Propagation from a set of sources. Call `add_source` for all sources, then `run`, then `check_reached` and `found`. After `clear`
+/// Propagation from a set of sources. Call `add_sources` once, then `run`, then `check_reached` and `found`. After `clear`
 /// the same memory serves another set of sources.
 class Propagation {
  public:
   Propagation(const PolyhedralSurface& surface, const ExactOptions& options, std::span<const MeshPoint> targets);
 
-  void add_source(const MeshPoint& point);
+  void add_sources(std::span<const MeshPoint> points);
   /// @throws Cancelled, InvalidGeometry (fault windows_without_end)
   void run(const Progress& progress);
   /// Checks that no vertex is farther than a neighbor plus the side between them. Otherwise windows were lost, which happens in
@@ -277,6 +277,7 @@ class Propagation {
 
   void place_targets(std::span<const MeshPoint> targets);
 
+  void add_source(const MeshPoint& point);
   void add_vertex_source(std::uint32_t origin2, Index vertex);
   Ray in_next(const Ray& ray) const;
   void light_face_beyond_right(const Ray& ray);

@@ -100,6 +100,7 @@ class PolyhedralSurface {
   double angle_scale(Index vertex) const;
   /// Number of the vertex' connected component, from 0.
   Index component(Index vertex) const { return component_[vertex]; }
+  Index component(const MeshPoint& point) const { return component_[face_[point.face].tail[0]]; }
   struct Component {
     Index vertices = 0;
     double mean_length = 0;  ///< of the sides of all faces
