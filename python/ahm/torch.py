@@ -28,7 +28,7 @@ from ._local_maps import LocalMaps as _Maps, local_maps
 from ._meshes import TriangleMesh
 from ._options import checked
 
-torch: Any = importlib.import_module("torch")
+torch: Any = importlib.import_module("torch")  # Any: checkers of types need not read torch
 
 __all__ = ["Edges", "LocalMaps", "edges"]
 
@@ -48,7 +48,7 @@ def edges(maps: _Maps) -> Edges:
 
     maps : local maps of rows, from `ahm.local_maps`. `Edges.transport` is None if they have none.
 
-    `transport` is the inverse of `ahm.LocalMaps.transport`, because messages go from the neighbor to the source. All rows without a
+    `transport` is the inverse of `ahm.LocalMaps.transport`, because messages go from the neighbor to the source. Rows without a
     vertex have no edges, and no number is NaN.
 
     Raises ValueError (a source that is not a row; maps of another dimension than 2; a surface that is not orientable, whose
@@ -61,8 +61,8 @@ def edges(maps: _Maps) -> Edges:
     transport = None
     if maps.transport is not None:
         transport = torch.from_numpy(np.conj(maps.transport.astype(np.float32).view(np.complex64)[:, 0]))
-    single = [torch.from_numpy(values.astype(np.float32)) for values in (maps.log, maps.distance, maps.weight)]
-    return Edges(torch.from_numpy(maps.edge_index()), single[0], transport, *single[1:])
+    log, distance, weight = (torch.from_numpy(values.astype(np.float32)) for values in (maps.log, maps.distance, maps.weight))
+    return Edges(torch.from_numpy(maps.edge_index()), log, transport, distance, weight)
 
 
 class LocalMaps:

@@ -12,16 +12,6 @@ torch = pytest.importorskip("torch")
 import ahm.torch  # noqa: E402
 
 
-@pytest.fixture(scope="module")
-def sphere():
-    return ahm.TriangleMesh(*ahm.shapes.sphere(3))
-
-
-@pytest.fixture(scope="module")
-def plane():
-    return ahm.TriangleMesh(*ahm.shapes.plane(12, 9))
-
-
 def as_data(positions, faces=None):
     data = types.SimpleNamespace(pos=torch.from_numpy(np.array(positions, float)))
     if faces is not None:
@@ -40,8 +30,9 @@ def test_edges_are_the_entries_of_the_maps(sphere):
     assert ahm.torch.edges(ahm.local_maps(sphere, 0.4, transport=False)).transport is None
 
 
-def test_messages_of_a_constant_field_on_a_plane_agree(plane):
+def test_messages_of_a_constant_field_on_a_plane_agree(flat_surfaces):
     """Vectors of the neighbors, transported to the source, are the vector there."""
+    plane = flat_surfaces["triangles"]
     found = ahm.torch.edges(ahm.local_maps(plane, k=20))
     axes = torch.from_numpy(plane.frames).float()
     vector = torch.tensor([0.3, -0.7, 0.0]).expand(len(axes), 3)
@@ -73,9 +64,9 @@ def test_a_transform_fills_data_of_meshes_and_clouds(sphere):
 
 
 def test_rows_without_a_vertex_have_no_edges(plane):
-    positions = np.vstack([plane.points, [[50.0, 50, 50]]])
-    data = ahm.torch.LocalMaps(radius=2.0)(as_data(positions, plane.faces))
-    assert int(data.edge_index.max()) == len(plane.points) - 1
+    positions, faces = plane
+    data = ahm.torch.LocalMaps(radius=2.0)(as_data(np.vstack([positions, [[50.0, 50, 50]]]), faces))
+    assert int(data.edge_index.max()) == len(positions) - 1
     assert all(bool(torch.isfinite(t).all()) for t in (data.log, data.transport.real, data.distance, data.weight))
 
 

@@ -83,8 +83,7 @@ constexpr Sentence sentences[] = {
      "{0:.0f} [point was|points were] merged with another point that is much closer than the spacing"},
     {"coarse_coordinates",
      "the coordinates have single precision: so far from the origin the resolution of {4} is {0:.3g}, and the mean "
-     "edge "
-     "length is {1:.3g}; export them in double precision, or shift them to the origin first"},
+     "edge length is {1:.3g}; export them in double precision, or shift them to the origin first"},
     {"layers",
      "the points lie in layers {0:.3g} apart, which is less than the spacing, and are mapped as one surface; this is "
      "correct for several scans of the same side; the two sides of a thin wall require oriented normals in the input"},

@@ -301,7 +301,7 @@ PolarMapSolver::Seeds PolarMapSolver::seeds_of(const SurfacePoint& source, const
 
 /// @param seeds  empty: the front starts at the source
 LogMap PolarMapSolver::log_map(const Source& source, const PolarMapOptions& options, const Seeds& seeds) const {
-  return detail::with_memory_check("a polar map", [&] {
+  return detail::with_memory_check("computing a polar map", [&] {
     Fronts fronts(*this);
     return polar_map(fronts.around(source, seeds, options, true), source, options);
   });

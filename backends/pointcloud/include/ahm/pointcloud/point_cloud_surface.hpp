@@ -65,7 +65,7 @@ struct CloudDetails {
   Index duplicates = 0;  ///< points merged into an equal one
   /// Rounding step of the largest coordinates, world units, if all coordinates are single-precision numbers; otherwise 0.
   double coordinate_step = 0;
-  int coarse_axis = 0;                ///< axis of the largest coordinates: 0, 1, 2 for x, y, z
+  int coarse_axis = 0;                ///< axis of these coordinates: 0, 1, 2 for x, y, z
   Index near_duplicates = 0;          ///< points merged into another one much nearer than the spacing
   Index smoothed = 0;                 ///< points moved because of noise
   Index degenerate = 0;               ///< points without a tangent plane or without a triangle, removed
@@ -111,9 +111,9 @@ struct CloudDetails {
 ///
 /// Warnings, each with a count unless noted: normals_estimated; normals_contradicted; cover_not_delaunay (no number); degenerate
 /// (with rows); normals_flipped; k_reduced (k requested, k used, distinct points); smoothed (points, noise); near_duplicates;
-/// coarse_coordinates (step, mean edge length; the name of the axis); layers (gap); no_surface (points as thick as wide, vertices); lines (points);
-/// non_finite; duplicates; thin_walls (pairs of neighbors not joined); reflections (edges); cloud_components (components, if more
-/// than one).
+/// coarse_coordinates (step, mean edge length; the name of the axis); layers (gap); no_surface (points as thick as wide,
+/// vertices); lines (points); non_finite; duplicates; thin_walls (pairs of neighbors not joined); reflections (edges);
+/// cloud_components (components, if more than one).
 ///
 /// Faults of a row: row_left_out (not in `CloudOptions::rows`), row_removed (not finite, no tangent plane, or no triangle).
 class PointCloudSurface final : public Surface {
