@@ -6,28 +6,23 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <tuple>
 #include <utility>
 
 #include "ahm/error.hpp"
 #include "ahm/util/scratch.hpp"
 #include "ahm/util/small_math.hpp"
 #include "ahm/util/vec.hpp"
-#include "maps/affine_heat.hpp"
 #include "maps/front_geometry.hpp"
-#include "maps/one_rings.hpp"
+#include "maps/wavefront_impl.hpp"
 
 namespace ahm {
 namespace {
 
-constexpr Index none = -1;
 /// Smallest relative improvement of a distance. Smaller ones are rounding.
 constexpr double least_gain = 1e-12;
 /// Paths whose lengths differ by less than `same_length` (relative) are equally long. Of these the one with the smaller focusing is
 /// chosen, so that rounding does not choose between paths through the same flat faces.
 constexpr double same_length = 1e-10, same_focusing = 1e-6;
-/// Largest number of improvements of an entry. Without it, inconsistent triangles could cause an infinite loop.
-constexpr std::uint8_t most_gains = 40;
 /// Largest number of points for which a vertex stores distances: of points, of samples of a curve, and of the latter the nearest
 /// ones. Curves have many samples at nearly equal distances.
 constexpr std::size_t most_points = 8, most_of_curve = 12, nearest_of_curve = 4;
@@ -44,147 +39,7 @@ bool comes_before(double distance, double focusing, double other, double other_f
   return std::abs(gain) > same_focusing * std::abs(other_focusing) ? gain > 0 : distance < other * (1 - least_gain);
 }
 
-Vec2 unit_vector(const Vec2& v) {
-  const double size = length(v);
-  return {v[0] / size, v[1] / size};  // NaN for the zero vector
-}
-
 }  // namespace
-
-struct Wavefront::Impl {
-  using Corner = OneRings::Corner;
-  using Neighbor = OneRings::Neighbor;
-  /// Distance of a vertex from one point. Vertices near the border between two points have entries for both, so that both fronts can unfold
-  /// across it. The entries of a vertex are contiguous, the nearest first, in blocks of 1, 2, 4, 8 or 16.
-  struct Entry {
-    double distance = 0, focusing = 0;  ///< distance, and m of docs/concepts/accuracy.md
-    Index point = -1;
-    std::uint8_t gains = 0;  ///< how often the distance was improved
-    std::uint8_t count = 0;  ///< number of entries of the vertex; valid in the first of them
-  };
-  /// The geodesic path of an entry.
-  struct Path {
-    Vec2 direction;                     ///< direction at the point, in the frame of the source
-    Vec2 arrival{};                     ///< direction at the vertex, in its frame; {0, 0}: from `last`; NaN: unknown
-    std::array<Index, 2> last{-1, -1};  ///< ends of the side that the path crosses last; equal: it follows an edge
-    float share = 0;                    ///< where the path crosses that side: 0 at the first end, 1 at the second
-    float variance = 0;                 ///< sum of squared differences of the direction estimates (`direction_error`)
-    float widening = 0;                 ///< ln(J / d): `widening_between`
-    bool mirrored = false;              ///< as `is_mirrored`
-  };
-  /// A one-ring in the cache.
-  struct CachedRing {
-    Index vertex = -1;
-    std::vector<Corner> corners;
-  };
-  /// State of a neighbor while the front spreads from a vertex.
-  struct NeighborState {
-    double distance, along, focusing;  ///< shortest distance so far, distance along the edge, m
-    bool is_new;                       ///< whether this vertex has improved the distance
-    Path path;
-  };
-  /// A neighbor from which the front comes along an axis (`eikonal_factor`).
-  struct Upwind {
-    double length, cosine, factor;
-  };
-  struct QueueEntry {
-    double distance;
-    Index vertex, point;
-    bool operator>(const QueueEntry& other) const {
-      return distance != other.distance ? distance > other.distance
-                                        : (vertex != other.vertex ? vertex > other.vertex : point > other.point);
-    }
-  };
-  /// A vertex near a point, with its position relative to the point from the source.
-  struct NearVertex {
-    Index vertex, point;
-    double distance;
-    Vec2 offset, arrival;  ///< position in the frame of the source; direction at the vertex, in its frame
-    bool mirrored;
-  };
-
-  Impl(const TangentGraph& graph, std::shared_ptr<const OneRings> one_rings, bool directions);
-  Index add(const Source& source);
-  void clear();
-  void forget();
-  void restart(std::span<const Seed> seeds, std::function<bool(Vertex)> is_closed);
-  void run(double radius, const StopToken& stop);
-  std::vector<Vertex> reached() const;
-  double next() const {
-    return queue_.empty() ? std::numeric_limits<double>::infinity()
-                          : (queue_.top().distance - longest_) * graph_.length_unit();
-  }
-  /// The nearest entry of a vertex; null if the front has not reached it.
-  const Entry* nearest(Vertex vertex) const {
-    const Index first = first_[vertex.index];
-    return first < 0 ? nullptr : &entries_[first];
-  }
-  /// The path of the nearest entry; null without directions, too.
-  const Path* path(Vertex vertex) const {
-    const Index first = first_[vertex.index];
-    return first < 0 || !directions_ ? nullptr : &paths_[first];
-  }
-
-  std::span<const Entry> entries_of(Index vertex) const {
-    const Index first = first_[vertex];
-    return first < 0 ? std::span<const Entry>() : std::span(&entries_[first], entries_[first].count);
-  }
-  const Entry* find(Index vertex, Index point) const {
-    for (const Entry& entry : entries_of(vertex))
-      if (entry.point == point) return &entry;
-    return nullptr;
-  }
-  Index number(const Entry& entry) const { return static_cast<Index>(&entry - entries_.data()); }
-  Index append(Index vertex);
-  Index new_row(std::size_t size);
-  void swap_entries(Index a, Index b);
-  void offer_midpoints(std::vector<NearVertex>& given);
-  void offer(Index vertex, Index point, double distance, double slack, std::span<const double> displacement,
-             const Path& path, double focusing = 0);
-  Index entry_to_replace(Index vertex, Index point, double distance);
-  void spread(Index from, Index point, double distance);
-  void carry(Index from, Index point, double distance);
-  double factor_at(Index vertex, Index point, std::span<const double> displacement, double distance);
-  std::span<const double> displacement(const Entry& entry) const {
-    return std::span(displacements_).subspan(number(entry) * d_, d_);
-  }
-  std::span<const Corner> one_ring(Index vertex);
-  double curvature(Index vertex);
-
-  const TangentGraph& graph_;
-  std::size_t d_;
-  std::vector<Index> first_;    ///< first entry of each vertex or midpoint; -1: none
-  std::vector<Index> touched_;  ///< vertices and midpoints with entries
-  std::vector<Entry> entries_;
-  std::array<std::vector<Index>, 4> free_;  ///< unused blocks of 1, 2, 4 and 8 entries
-  std::vector<double> displacements_;       ///< d per entry: from the vertex to the point, vertex frame; d = 2: empty
-  double longest_ = 0;  ///< longest edge passed: a path of length L crosses no side with an end beyond L + `longest_`
-  /// Radius of `run`, and the longest edge passed that a path of this length may cross: on triangulations one whose nearer end is at most
-  /// half of the edge's length farther.
-  double limit_ = 0, longest_within_ = 0;
-  std::function<bool(Vertex)> is_closed_;  ///< vertices that the front does not enter; empty: none
-  double missed_;                          ///< tolerance of `across_side`: share of a side by which a line may miss it
-  bool is_curved_;  ///< whether paths carry the curvature of the front: on Delaunay triangulations
-  bool directions_;
-  bool of_curve_ = false;  ///< whether samples of a curve are among the points
-  std::vector<double>
-      curvatures_;           ///< curvature of vertices not in `one_rings_`, empty until used; NaN: not computed yet
-  std::vector<Path> paths_;  ///< paths of the entries; empty without directions
-  struct Queue : std::priority_queue<QueueEntry, std::vector<QueueEntry>, std::greater<>> {
-    void clear() { c.clear(); }
-  };
-  Queue queue_;
-  std::shared_ptr<const OneRings> one_rings_;
-  std::vector<CachedRing>
-      ring_cache_;  ///< cache of one-rings that are not in `one_rings_`, indexed by the vertex modulo its size
-  std::vector<Corner> ring_;  ///< one-ring of the current vertex
-  std::vector<Neighbor> neighbors_;
-  std::vector<NeighborState> states_;  ///< states of the neighbors of the current vertex
-  std::vector<std::size_t> axis_;
-  std::vector<const Entry*> nearest_;
-  std::vector<Upwind> upwind_;
-  Index points_ = 0;
-};
 
 Wavefront::Impl::Impl(const TangentGraph& graph, std::shared_ptr<const OneRings> one_rings, bool directions)
     : graph_(graph),
@@ -197,93 +52,6 @@ Wavefront::Impl::Impl(const TangentGraph& graph, std::shared_ptr<const OneRings>
                      : std::make_shared<const OneRings>(graph, halved_vertices(graph), false)) {
   first_.assign(static_cast<std::size_t>(one_rings_ ? one_rings_->size() : graph.size()), none);
   entries_.reserve(first_.size());
-}
-
-Index Wavefront::Impl::add(const Source& source) {
-  check_source(source, graph_);
-  const double unit = graph_.length_unit();
-  const Index first = points_;
-  of_curve_ = of_curve_ || source.is_curve();
-  const bool may_reflect = graph_.transport_layout().may_reflect();
-  std::vector<NearVertex> given;
-  Scratch offset(d_), back(d_);
-  for (std::size_t k = 0; k < source.vertices().size(); ++k) {
-    if (!(source.weights()[k] > 0)) continue;
-    const auto [point, away, position] = source.place(k);
-    points_ = std::max(points_, first + point + 1);
-    const std::span<const double> axes =
-        source.axes().empty() ? source.axes() : source.axes().subspan(k * d_ * d_, d_ * d_);
-    for (std::size_t c = 0; c < d_; ++c) {
-      const double start = d_ == 2 ? position[c] : 0;
-      offset.data()[c] = source.offsets().empty() ? 0 : (source.offsets()[k * d_ + c] - start) / unit;
-      back.data()[c] = 0;
-    }
-    for (std::size_t c = 0; c < d_; ++c)
-      for (std::size_t a = 0; a < d_ && !source.offsets().empty(); ++a)
-        back.data()[c] -= axes[c * d_ + a] * offset.data()[a];
-    const Index vertex = source.vertices()[k].index;
-    if (d_ != 2) {
-      offer(vertex, first + point, away / unit, 0, back.span(), {});
-      continue;
-    }
-    const bool mirrored = !axes.empty() && axes[0] * axes[3] < axes[1] * axes[2];
-    given.push_back({vertex,
-                     first + point,
-                     away / unit,
-                     {offset.data()[0], offset.data()[1]},
-                     unit_vector({-back.data()[0], -back.data()[1]}),
-                     mirrored});
-    const auto is_of_point = [&, point = point](std::size_t other) {
-      return other < source.vertices().size() && source.place(other).point == point;
-    };
-    const bool beside = away != 0 && !is_of_point(k - 1) && !is_of_point(k + 1);
-    const Star star = graph_.star(vertex);
-    for (std::size_t e = 0; e < star.degree(); ++e) {
-      const double side = length(star.log(e));
-      longest_ = std::max(longest_, side);
-      // If the point has only one vertex, or the vertex is at the point, the neighbors have known positions in its tangent plane, too.
-      if (!(beside || away / unit <= least_ray * side)) continue;
-      const Vec2 from{star.log(e)[0] - back.data()[0], star.log(e)[1] - back.data()[1]};
-      const Vec2 there =
-          axes.empty() ? from : Vec2{axes[0] * from[0] + axes[2] * from[1], axes[1] * from[0] + axes[3] * from[1]};
-      Vec2 arrival{};
-      star.transport(e).apply_inverse(from.data(), arrival.data());
-      given.push_back({star.neighbors[e], first + point, std::hypot(from[0], from[1]), there, unit_vector(arrival),
-                       mirrored != (may_reflect && star.transport(e).reflects())});
-    }
-  }
-  // Also if another point is nearer by up to 4 edge lengths: from there the front reaches this point's side of the border.
-  for (const NearVertex& one : given)
-    offer(one.vertex, one.point, one.distance, 4 * longest_, {},
-          {.direction = unit_vector(one.offset), .arrival = one.arrival, .mirrored = one.mirrored});
-  if (one_rings_) offer_midpoints(given);
-  return first;
-}
-
-/// Offers distances to the midpoints of the edges whose both ends are near a point. The distance from the point to the midpoint is
-/// the length of a median of the triangle of the point and the two ends.
-void Wavefront::Impl::offer_midpoints(std::vector<NearVertex>& given) {
-  const auto comes_before = [](const NearVertex& a, const NearVertex& b) {
-    return std::tie(a.point, a.vertex) < std::tie(b.point, b.vertex);
-  };
-  std::sort(given.begin(), given.end(), comes_before);
-  std::vector<OneRings::CutEdge> edges;
-  for (const NearVertex& one : given) {
-    one_rings_->find_cut_edges(one.vertex, edges);
-    for (const auto& edge : edges) {
-      if (edge.end <= one.vertex) continue;
-      NearVertex end = one;
-      end.vertex = edge.end;
-      const auto [first, last] = std::equal_range(given.begin(), given.end(), end, comes_before);
-      for (auto other = first; other != last; ++other) {
-        const double a = one.distance, b = other->distance;
-        const double squared = 0.5 * (a * a + b * b) - edge.half * edge.half;
-        const Vec2 between{one.offset[0] + other->offset[0], one.offset[1] + other->offset[1]};
-        offer(edge.midpoint, one.point, std::sqrt(std::max(0.0, squared)), 4 * longest_, {},
-              {.direction = unit_vector(between), .mirrored = one.mirrored});
-      }
-    }
-  }
 }
 
 /// Removes the entries of all vertices.
@@ -311,58 +79,6 @@ std::vector<Vertex> Wavefront::Impl::reached() const {
   for (const Index vertex : touched_)
     if (vertex < graph_.size()) vertices.emplace_back(vertex);
   return vertices;
-}
-
-void Wavefront::Impl::restart(std::span<const Seed> seeds, std::function<bool(Vertex)> is_closed) {
-  struct Start {
-    double focusing = 0;
-    float widening = 0;
-  };
-  std::vector<Start> starts;
-  starts.reserve(seeds.size());
-  struct Neighboring {
-    Index vertex;
-    Entry entry;
-    Path path;
-  };
-  std::vector<Neighboring> beside_point;  // a seed at its point has no direction that its neighbors could take over
-  for (const Seed& seed : seeds) {
-    const Entry* const found = find(seed.vertex.index, seed.point);
-    starts.push_back(found ? Start{found->focusing, paths_[number(*found)].widening} : Start{});
-    if (!std::isnan(seed.direction[0])) continue;
-    for (const Corner& corner : one_ring(seed.vertex.index))
-      if (const Entry* const next = find(corner.neighbor, seed.point))
-        beside_point.push_back({corner.neighbor, *next, paths_[number(*next)]});
-  }
-  forget();
-  is_closed_ = nullptr;
-  for (std::size_t k = 0; k < seeds.size(); ++k) {
-    const Index vertex = seeds[k].vertex.index;
-    offer(vertex, seeds[k].point, seeds[k].distance / graph_.length_unit(), 0, {},
-          {.direction = seeds[k].direction,
-           .arrival = seeds[k].arrival,
-           .variance = static_cast<float>(4 * seeds[k].error * seeds[k].error),
-           .widening = starts[k].widening,
-           .mirrored = seeds[k].mirrored},
-          starts[k].focusing);
-    entries_[first_[vertex]].gains = most_gains;  // prevents improvements
-  }
-  // Only seeds with a neighbor that is not a seed need to spread.
-  queue_.clear();
-  longest_ = 0;
-  is_closed_ = std::move(is_closed);
-  const auto is_free = [&](const Corner& corner) {
-    return first_[corner.neighbor] == none && !(is_closed_ && is_closed_(Vertex(corner.neighbor)));
-  };
-  for (const Seed& seed : seeds) {
-    const Index vertex = seed.vertex.index;
-    const std::span<const Corner> ring = one_ring(vertex);
-    if (std::ranges::none_of(ring, is_free)) continue;
-    queue_.push({entries_[first_[vertex]].distance, vertex, seed.point});
-    for (const Corner& corner : ring) longest_ = std::max(longest_, corner.length);
-  }
-  for (const auto& [vertex, entry, path] : beside_point)
-    if (first_[vertex] == none) offer(vertex, entry.point, entry.distance, 0, {}, path, entry.focusing);
 }
 
 void Wavefront::Impl::run(double radius, const StopToken& stop) {
