@@ -187,6 +187,16 @@ std::vector<double> relative_errors(std::span<const std::complex<double>> found,
   return result;
 }
 
+std::string vector_error_summary(const Table& table) {
+  const auto median = [&](const char* as, const char* method) {
+    return quantile(table.where("as", as).where("method", method).numbers("vector 95%"), 0.5);
+  };
+  return fmt::format(
+      "95th percentile of the vectors' relative error, median over meshes: polar {:.2g} on triangles and {:.2g} on "
+      "their vertices as points, heat {:.2g} and {:.2g}.",
+      median("triangles", "polar"), median("points", "polar"), median("triangles", "heat"), median("points", "heat"));
+}
+
 double fitted_order(std::span<const double> x, std::span<const double> y) {
   const auto n = static_cast<double>(x.size());
   double sx = 0, sy = 0, sxx = 0, sxy = 0;

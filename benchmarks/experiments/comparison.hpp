@@ -101,6 +101,9 @@ std::vector<double> vector_errors(const Surface& surface, const LogMap& exact, c
 std::vector<double> relative_errors(std::span<const std::complex<double>> found,
                                     std::span<const std::complex<double>> exact);
 
+/// A sentence with the medians over meshes of "vector 95%", by "method" ("polar", "heat") and "as" ("triangles", "points").
+std::string vector_error_summary(const Table& table);
+
 /// Least-squares slope of log y over log x: the order of convergence if x is h and y the error.
 double fitted_order(std::span<const double> x, std::span<const double> y);
 

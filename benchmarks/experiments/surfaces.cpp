@@ -20,18 +20,29 @@ Vec3 on_sphere(double polar, double turn) {
   return {std::sin(polar) * std::cos(turn), std::sin(polar) * std::sin(turn), std::cos(polar)};
 }
 
+/// "name.obj" and "name.obj.gz" are "name" with the type ".obj".
+struct MeshFile {
+  std::filesystem::path path;
+  std::string name, type;
+};
+
+MeshFile mesh_file(const std::filesystem::path& path) {
+  const std::filesystem::path unpacked = path.extension() == ".gz" ? path.stem() : path.filename();
+  return {path, unpacked.stem().string(), unpacked.extension().string()};
+}
+
 /// Mesh files in `settings.meshes` and its subfolders, sorted by size.
-std::vector<std::filesystem::path> mesh_files(const Settings& settings) {
+std::vector<MeshFile> mesh_files(const Settings& settings) {
   std::vector<std::pair<std::uintmax_t, std::filesystem::path>> files;
   if (!settings.meshes.empty())
     for (const auto& entry : std::filesystem::recursive_directory_iterator(settings.meshes))
-      if (const auto type = entry.path().extension();
+      if (const std::string type = mesh_file(entry.path()).type;
           type == ".ply" || type == ".off" || type == ".obj" || type == ".stl")
         files.emplace_back(entry.file_size(), entry.path());
   std::sort(files.begin(), files.end());
-  std::vector<std::filesystem::path> paths;
-  for (auto& [size, path] : files) paths.push_back(std::move(path));
-  return paths;
+  std::vector<MeshFile> found;
+  for (const auto& [size, path] : files) found.push_back(mesh_file(path));
+  return found;
 }
 
 bool only_triangles(const io::Geometry& file) {
@@ -40,45 +51,35 @@ bool only_triangles(const io::Geometry& file) {
   return true;
 }
 
-NamedMesh read_triangles(const std::filesystem::path& path) {
-  const io::Geometry file = io::read(path);
-  if (file.face_count() == 0) throw InvalidGeometry("has no faces");
-  if (!only_triangles(file)) throw InvalidGeometry("is not a triangle mesh");
-  NamedMesh mesh{{file.points, {}, {}}, path.stem().string()};
-  for (std::size_t f = 0; f < file.face_count(); ++f)
-    mesh.faces.push_back({file.face(f)[0], file.face(f)[1], file.face(f)[2]});
-  return mesh;
-}
-
 }  // namespace
 
-std::vector<NamedMesh> user_meshes(const Settings& settings, Index largest) {
-  std::vector<NamedMesh> meshes;
-  for (const auto& path : mesh_files(settings)) try {
-      if (NamedMesh mesh = read_triangles(path); static_cast<Index>(mesh.positions.size()) <= largest)
-        meshes.push_back(std::move(mesh));
+UserSurfaces user_surfaces(const Settings& settings, Index largest) {
+  UserSurfaces found;
+  for (const auto& [path, name, type] : mesh_files(settings)) try {
+      const io::Geometry file = io::read(path);
+      if (file.face_count() == 0) throw InvalidGeometry("has no faces");
+      if (static_cast<Index>(file.points.size()) > largest) continue;
+      if (only_triangles(file)) {
+        NamedMesh& mesh = found.triangles.emplace_back(NamedMesh{{file.points, {}, {}}, name});
+        for (std::size_t f = 0; f < file.face_count(); ++f)
+          mesh.faces.push_back({file.face(f)[0], file.face(f)[1], file.face(f)[2]});
+      } else {
+        NamedPolygons& mesh = found.polygons.emplace_back();
+        mesh.positions = file.points;
+        mesh.name = name;
+        for (std::size_t f = 0; f < file.face_count(); ++f) mesh.add({file.face(f).begin(), file.face(f).end()});
+      }
     } catch (const Error& e) {
       fmt::print(stderr, "left out: {}: {}\n", path.string(), e.what());
     }
-  return meshes;
+  return found;
 }
 
-std::vector<NamedPolygons> user_polygons(const Settings& settings, Index largest) {
-  std::vector<NamedPolygons> meshes;
-  for (const auto& path : mesh_files(settings)) try {
-      const io::Geometry file = io::read(path);
-      if (only_triangles(file) || static_cast<Index>(file.points.size()) > largest) continue;
-      NamedPolygons& mesh = meshes.emplace_back();
-      mesh.positions = file.points;
-      mesh.name = path.stem().string();
-      for (std::size_t f = 0; f < file.face_count(); ++f) {
-        const auto face = file.face(f);
-        mesh.add({face.begin(), face.end()});
-      }
-    } catch (const Error&) {
-      continue;  // reported by `user_meshes`
-    }
-  return meshes;
+std::vector<NamedMesh> user_meshes(const Settings& settings, Index largest) {
+  UserSurfaces found = user_surfaces(settings, largest);
+  for (const NamedPolygons& mesh : found.polygons)
+    fmt::print(stderr, "left out: {}: is not a triangle mesh\n", mesh.name);
+  return std::move(found.triangles);
 }
 
 Mesh parallels_and_meridians(int parallels, int meridians, double last) {

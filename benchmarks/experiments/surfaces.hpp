@@ -22,11 +22,16 @@ struct NamedPolygons : test::Polygons {
   std::string name;
 };
 
-/// The triangle meshes in `settings.meshes` and its subfolders with at most `largest` vertices, sorted by file size. Files
-/// that cannot be read, or that contain other polygons, are reported on the error stream and left out.
+/// Triangle meshes and meshes of other polygons.
+struct UserSurfaces {
+  std::vector<NamedMesh> triangles;
+  std::vector<NamedPolygons> polygons;
+};
+/// The meshes in `settings.meshes` and its subfolders with at most `largest` vertices, sorted by file size, also those
+/// compressed with gzip. Files that cannot be read are reported on the error stream and left out.
+UserSurfaces user_surfaces(const Settings& settings, Index largest);
+/// The triangle meshes only. Meshes of other polygons are reported, too.
 std::vector<NamedMesh> user_meshes(const Settings& settings, Index largest = 1'000'000'000);
-/// The polygon meshes in `settings.meshes` and its subfolders that are not triangle meshes.
-std::vector<NamedPolygons> user_polygons(const Settings& settings, Index largest);
 
 /// A sphere of meridians and parallels; few parallels make long thin triangles. `last` < pi leaves it open at the bottom.
 Mesh parallels_and_meridians(int parallels, int meridians, double last = std::numbers::pi);

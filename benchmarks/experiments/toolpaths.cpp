@@ -59,10 +59,11 @@ void try_part(const std::string& name, const std::function<SurfacePtr()>& build,
 }
 
 void measure_user_parts(const Settings& settings, Table& table) {
-  for (const NamedMesh& mesh : user_meshes(settings, largest_part))
+  const UserSurfaces user = user_surfaces(settings, largest_part);
+  for (const NamedMesh& mesh : user.triangles)
     try_part(
         mesh.name, [&] { return triangles(mesh.positions, mesh.faces); }, settings, table);
-  for (const NamedPolygons& mesh : user_polygons(settings, largest_part))
+  for (const NamedPolygons& mesh : user.polygons)
     try_part(
         mesh.name,
         [&]() -> SurfacePtr {

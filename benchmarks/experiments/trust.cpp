@@ -228,19 +228,18 @@ Table trust(const Settings& settings) {
   }
   measure(NamedPolygons{test::cube_sphere(static_cast<Index>(std::sqrt(n / 6.0))), "sphere of quads"}, table);
   measure(NamedPolygons{test::voronoi_sphere(n / 2), "sphere of Voronoi cells"}, table);
-  for_user_surfaces(settings, largest_mesh, [&](const Surface& surface) { measure(surface, table); });
-  for (const NamedPolygons& mesh : user_polygons(settings, largest_mesh)) try {
-      measure(mesh, table);
+  const UserSurfaces user = user_surfaces(settings, largest_mesh);
+  const auto try_measure = [](const std::string& name, const auto& run) {
+    try {
+      run();
     } catch (const Error& e) {
-      fmt::print(stderr, "left out: {}: {}\n", mesh.name, e.what());
+      fmt::print(stderr, "left out: {}: {}\n", name, e.what());
     }
-  const auto median = [&](const char* as, const char* method) {
-    return quantile(table.where("as", as).where("method", method).numbers("vector 95%"), 0.5);
   };
-  table.seen = fmt::format(
-      "95th percentile of the vectors' relative error, median over meshes: polar {:.2g} on triangles and {:.2g} on "
-      "their vertices as points, heat {:.2g} and {:.2g}.",
-      median("triangles", "polar"), median("points", "polar"), median("triangles", "heat"), median("points", "heat"));
+  for (const NamedMesh& mesh : user.triangles)
+    try_measure(mesh.name, [&] { measure(Surface(mesh.name, mesh), table); });
+  for (const NamedPolygons& mesh : user.polygons) try_measure(mesh.name, [&] { measure(mesh, table); });
+  table.seen = vector_error_summary(table);
   return table;
 }
 

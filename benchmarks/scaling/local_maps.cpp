@@ -172,13 +172,7 @@ Table local_maps(const Settings& settings) {
     measure(Surface("torus", torus(n)));
   }
   for_user_surfaces(settings, 30'000, measure);
-  const auto median = [&](const char* as, const char* method) {
-    return quantile(table.where("as", as).where("method", method).numbers("vector 95%"), 0.5);
-  };
-  table.seen = fmt::format(
-      "95th percentile of the vectors' relative error, median over meshes: polar {:.2g} on triangles and {:.2g} on "
-      "their vertices as points, heat {:.2g} and {:.2g}.",
-      median("triangles", "polar"), median("points", "polar"), median("triangles", "heat"), median("points", "heat"));
+  table.seen = vector_error_summary(table);
   return table;
 }
 

@@ -96,6 +96,10 @@ TEST(UserMeshes, AreRunAsWellAndBrokenFilesLeftOut) {
   ASSERT_EQ(meshes.size(), 1u);
   EXPECT_EQ(meshes[0].name, "octahedron");
   EXPECT_TRUE(user_meshes(settings, 5).empty());
+  const UserSurfaces surfaces = user_surfaces(settings, 10);
+  ASSERT_EQ(surfaces.polygons.size(), 1u);
+  EXPECT_EQ(surfaces.polygons[0].name, "square");
+  EXPECT_EQ(surfaces.triangles.size(), 1u);
   for (const Experiment& e : experiments())
     if (e.name == "variants") EXPECT_FALSE(e.run(settings).where("shape", "octahedron").rows().empty());
 }
