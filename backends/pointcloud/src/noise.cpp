@@ -7,9 +7,11 @@
 #include <optional>
 #include <utility>
 
+#include "ahm/error.hpp"
 #include "ahm/pointcloud/plane_fit.hpp"
 #include "ahm/util/parallel.hpp"
 #include "ahm/util/quantile.hpp"
+#include "ahm/util/text.hpp"
 #include "ahm/util/vec.hpp"
 #include "clean_points.hpp"
 #include "cloud_parts.hpp"
@@ -198,10 +200,23 @@ NoisyPlanes find_planes(CleanPoints& cloud, std::span<const Vec3> normals, std::
   return result;
 }
 
+/// @throws InvalidArgument if the radius of smoothing exceeds the longest side of the points' bounding box
+void check_radius(const CleanPoints& cloud, const CloudOptions& options) {
+  if (!options.smooth) return;
+  Vec3 low = cloud.points.front(), high = low;
+  for (const Vec3& p : cloud.points)
+    for (int a = 0; a < 3; ++a) low[a] = std::min(low[a], p[a]), high[a] = std::max(high[a], p[a]);
+  const Vec3 sides = cloud.unit * (high - low);
+  if (const double longest = std::max({sides[0], sides[1], sides[2]}); *options.smooth > longest)
+    throw InvalidArgument("smooth is " + detail::number(*options.smooth) + ", but the cloud is only " +
+                          detail::number(longest) + " long; give a radius of a few spacings");
+}
+
 }  // namespace
 
 NoisyPlanes find_noisy_planes(CleanPoints& cloud, std::span<const Vec3> normals,
                               std::unique_ptr<NeighborSearch>& search, const CloudOptions& options) {
+  check_radius(cloud, options);
   NoisyPlanes result = find_planes(cloud, normals, search, options);
   CloudOptions quiet = options;
   quiet.progress.report = nullptr;

@@ -42,6 +42,7 @@ TEST(CloudFaults, OfOptionsAreNamed) {
   expect_error<InvalidArgument>(points, "options.search", {.search = nullptr});
   expect_error<InvalidArgument>(points, "max_edge_ratio", {.max_edge_ratio = NAN});
   expect_error<InvalidArgument>(points, "smooth is -1", {.smooth = -1.0});
+  expect_error<InvalidArgument>(points, "smooth is 1e+09, but the cloud is only ", {.smooth = 1e9});
   std::stop_source stop;
   stop.request_stop();
   CloudOptions stopped;

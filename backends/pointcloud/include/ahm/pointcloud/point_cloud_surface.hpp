@@ -41,7 +41,7 @@ struct CloudOptions {
   double max_edge_ratio = 3.0;
   /// Smoothing of the points by moving least squares, before the graph is built. Not set: where the noise exceeds 0.12 of
   /// the spacing, over the k neighbors. 0: off. Otherwise all points are smoothed, with neighborhoods of this radius, world
-  /// units.
+  /// units, at most the size of the cloud. The time grows with the number of points within the radius.
   std::optional<double> smooth;
   /// Measure noise, and decide about smoothing, separately for each part that shares no neighbors with the rest. The result for a
   /// part then does not depend on the rest of the file. false: one decision for all points, as for tiled clouds.
