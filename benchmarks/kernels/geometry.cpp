@@ -44,7 +44,7 @@ void mesh_flips(benchmark::State& state) {
     state.PauseTiming();
     auto triangulation = std::make_unique<ahm::trimesh::IntrinsicTriangulation>(mesh, false, 1);
     state.ResumeTiming();
-    triangulation->flip_to_delaunay({});
+    triangulation->flip_to_delaunay(1, {});
     state.PauseTiming();
     flips = triangulation->history().size();
     triangulation.reset();
@@ -58,7 +58,7 @@ void mesh_flips(benchmark::State& state) {
 void mesh_frames(benchmark::State& state) {
   const auto mesh = checked(ahm::bench::torus_mesh(static_cast<Index>(state.range(0))));
   ahm::trimesh::IntrinsicTriangulation triangulation(mesh, false, 1);
-  triangulation.flip_to_delaunay({});
+  triangulation.flip_to_delaunay(1, {});
   for (auto _ : state) benchmark::DoNotOptimize(ahm::trimesh::find_frames(mesh, triangulation, 1));
   report_points(state, mesh.vertex_count());
 }
@@ -67,7 +67,7 @@ void mesh_frames(benchmark::State& state) {
 void mesh_logs_transports(benchmark::State& state) {
   const auto mesh = checked(ahm::bench::torus_mesh(static_cast<Index>(state.range(0))));
   ahm::trimesh::IntrinsicTriangulation triangulation(mesh, false, 1);
-  triangulation.flip_to_delaunay({});
+  triangulation.flip_to_delaunay(1, {});
   const ahm::trimesh::VertexFrames frames = ahm::trimesh::find_frames(mesh, triangulation, 1);
   ahm::trimesh::MeshDetails report;
   auto work = [&] { return ahm::trimesh::mesh_edges(mesh, triangulation, frames, true, 1, report); };

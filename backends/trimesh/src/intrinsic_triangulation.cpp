@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "ahm/util/parallel.hpp"
+#include "ahm/util/unset_vector.hpp"
 #include "triangle_mesh_surface.hpp"
 
 namespace ahm::trimesh {
@@ -183,10 +184,15 @@ bool IntrinsicTriangulation::is_delaunay(Half h) const {
   return p[0] * q[1] + p[1] * q[0] >= -1e-15 - 1e-10 * p[1] * q[1];
 }
 
-bool IntrinsicTriangulation::flip_to_delaunay(const Progress& progress) {
+bool IntrinsicTriangulation::flip_to_delaunay(unsigned threads, const Progress& progress) {
+  detail::UnsetVector<char> flips(twin_.size());
+  detail::for_each_index(flips.size(), threads, [&](std::size_t i) {
+    const auto h = static_cast<Half>(i);
+    flips[i] = h < twin_[h] && !is_delaunay(h);
+  });
   std::vector<Half> stack;
   for (Half h = static_cast<Half>(twin_.size()) - 1; h >= 0; --h)
-    if (h < twin_[h] && !is_delaunay(h)) stack.push_back(h);
+    if (flips[h]) stack.push_back(h);
   const bool done = detail::flip_to_delaunay(
       std::move(stack), 64 * tail_.size() + 1024, [&](Half h) { return twin_[h]; },
       [&](Half h) { return is_delaunay(h); },

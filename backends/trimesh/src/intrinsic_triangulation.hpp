@@ -100,7 +100,7 @@ class IntrinsicTriangulation {
 
   /// Flips edges until all are Delaunay.
   /// @return false if the limit on the number of flips was reached
-  bool flip_to_delaunay(const Progress& progress);
+  bool flip_to_delaunay(unsigned threads, const Progress& progress);
 
   HalfEdges half_edges() const { return {tail_, twin_, mirrored_}; }
   /// Whether the mesh dropped a face. All functions here ignore such faces.

@@ -302,7 +302,7 @@ IntrinsicTriangulation triangulate(const TriangleMesh& mesh, const MeshOptions& 
   report.degenerate_faces = report.dropped_faces + static_cast<Index>(report.collinear.size());
   if (!(report.longest_edge > 0)) throw InvalidGeometry("all vertices of the mesh are at the same place");
   auto flip = [&](IntrinsicTriangulation& t) {
-    return !options.intrinsic_delaunay || t.flip_to_delaunay(options.progress);
+    return !options.intrinsic_delaunay || t.flip_to_delaunay(options.threads, options.progress);
   };
   if (flip(triangulation) && triangulation.has_angles()) return triangulation;
   triangulation = IntrinsicTriangulation(mesh, true, options.threads);
@@ -319,12 +319,12 @@ RowMap rows_of(const TriangleMesh& mesh) {
   return RowMap(mesh.report().vertices, mesh.vertex_count(), mesh.topology().rows());
 }
 
-exact::PolyhedralSurface polyhedron(const TriangleMesh& mesh) {
-  return {mesh.topology().half_edges(), [&](Index face) { return mesh.layout(face); }, mesh.corners()};
+exact::PolyhedralSurface polyhedron(const TriangleMesh& mesh, unsigned threads) {
+  return {mesh.topology().half_edges(), [&](Index face) { return mesh.layout(face); }, mesh.corners(), threads};
 }
 
 /// The polyhedral surface without dropped faces.
-exact::PolyhedralSurface polyhedron_of_kept(const TriangleMesh& mesh) {
+exact::PolyhedralSurface polyhedron_of_kept(const TriangleMesh& mesh, unsigned threads) {
   const HalfEdges edges = mesh.topology().half_edges();
   std::vector<Half> place(edges.tail.size(), -1), corners;  // numbers of the half-edges that are kept
   std::vector<Index> kept;
@@ -343,7 +343,7 @@ exact::PolyhedralSurface polyhedron_of_kept(const TriangleMesh& mesh) {
     if (!edges.mirrored.empty()) mirrored.push_back(edges.mirrored[h]);
   }
   for (Half h : mesh.corners()) corners.push_back(place[h]);
-  return {HalfEdges{tail, twin, mirrored}, [&](Index face) { return mesh.layout(kept[face]); }, corners};
+  return {HalfEdges{tail, twin, mirrored}, [&](Index face) { return mesh.layout(kept[face]); }, corners, threads};
 }
 
 }  // namespace
@@ -368,8 +368,8 @@ FlatTriangles TriangleMeshSurface::flat_triangles() const {
     positions.reserve(static_cast<std::size_t>(mesh.vertex_count()));
     for (Index v = 0; v < mesh.vertex_count(); ++v) positions.push_back(mesh.original_position(Vertex(v)));
   }
-  return {details().dropped_faces == 0 ? polyhedron(mesh) : polyhedron_of_kept(mesh), std::move(positions),
-          mesh.length_unit()};
+  const auto make = details().dropped_faces == 0 ? polyhedron : polyhedron_of_kept;
+  return {make(mesh, impl_->threads), std::move(positions), mesh.length_unit()};
 }
 
 exact::MeshPoint TriangleMeshSurface::flat_point_in_face(const FacePoint& point) const {
@@ -445,9 +445,9 @@ TriangleMeshSurface TriangleMeshSurface::build(TriangleMesh mesh, const MeshOpti
   details.seconds_graph = stopwatch.lap();
   RowMap rows = rows_of(mesh);
   std::vector<Index> face_rows = mesh.topology().given_corners();
-  return TriangleMeshSurface(
-      std::make_unique<const Impl>(Impl{std::move(mesh), std::move(triangulation), std::move(frames),
-                                        CsrGraph(std::move(data)), details, std::move(rows), std::move(face_rows)}));
+  return TriangleMeshSurface(std::make_unique<const Impl>(
+      Impl{std::move(mesh), std::move(triangulation), std::move(frames), CsrGraph(std::move(data)), details,
+           std::move(rows), std::move(face_rows), options.threads}));
 }
 
 TriangleMeshSurface TriangleMeshSurface::build(TriangleMesh mesh, const MeshOptions& options) {

@@ -18,6 +18,7 @@ struct TriangleMeshSurface::Impl {
   MeshDetails details;
   RowMap rows;
   std::vector<Index> face_rows;  ///< rows at the corners of the input faces
+  unsigned threads;              ///< for `flat_triangles`; 0: one per core
 
   /// A point in a face that was kept, by weights of its stored corners.
   struct StoredPoint {

@@ -8,6 +8,7 @@
 #include "ahm/error.hpp"
 #include "ahm/surface/detail/gluing.hpp"
 #include "ahm/util/disjoint_sets.hpp"
+#include "ahm/util/parallel.hpp"
 #include "ahm/util/text.hpp"
 #include "ahm/util/vec.hpp"
 
@@ -80,20 +81,25 @@ void check_count(const HalfEdges& edges, std::size_t faces) {
 }  // namespace
 
 PolyhedralSurface::PolyhedralSurface(const HalfEdges& edges, const std::function<FaceSides(Index)>& sides_of,
-                                     std::span<const Half> corners) {
+                                     std::span<const Half> corners, unsigned threads) {
   if (edges.tail.empty() || edges.tail.size() % 3 != 0 || edges.twin.size() != edges.tail.size() ||
       (!edges.mirrored.empty() && edges.mirrored.size() != edges.tail.size()))
     throw InvalidGeometry(needs_faces);
   if (std::ranges::min(edges.tail) < 0) throw InvalidGeometry("a tail is negative; vertices are numbered from 0");
   face_.resize(edges.tail.size() / 3);
-  for (Index f = 0; f < face_count(); ++f) set_face(f, edges, sides_of(f));
-  check_lengths();
-  set_fans(edges, corners);
+  detail::for_each_index(face_.size(), threads, [&](std::size_t i) {
+    const auto f = static_cast<Index>(i);
+    set_face(f, edges, sides_of(f));
+  });
+  detail::for_each_index(face_.size(), threads, [&](std::size_t f) { check_lengths(static_cast<Index>(f)); });
+  set_fans(edges, corners, threads);
+  set_components();
 }
 
 PolyhedralSurface::PolyhedralSurface(const HalfEdges& edges, std::span<const FaceSides> sides,
-                                     std::span<const Half> corners)
-    : PolyhedralSurface((check_count(edges, sides.size()), edges), [&](Index f) { return sides[f]; }, corners) {}
+                                     std::span<const Half> corners, unsigned threads)
+    : PolyhedralSurface((check_count(edges, sides.size()), edges), [&](Index f) { return sides[f]; }, corners,
+                        threads) {}
 
 PolyhedralSurface PolyhedralSurface::from_lengths(const HalfEdges& edges,
                                                   std::span<const std::array<double, 3>> lengths,
@@ -122,20 +128,20 @@ void PolyhedralSurface::set_face(Index face, const HalfEdges& edges, const FaceS
   }
 }
 
-/// Checks that both faces of an edge have the same length for it.
-void PolyhedralSurface::check_lengths() const {
-  for (Half h = 0; h < 3 * face_count(); ++h) {
-    const Half t = face_[h / 3].beyond[h % 3];
+/// Checks that the faces across the sides of a face have the same lengths for them.
+void PolyhedralSurface::check_lengths(Index face) const {
+  for (Half h = 3 * face; h < 3 * face + 3; ++h) {
+    const Half t = face_[face].beyond[h % 3];
     if (t < 0) continue;
-    const double here = face_[h / 3].length[h % 3], there = face_[t / 3].length[t % 3];
+    const double here = face_[face].length[h % 3], there = face_[t / 3].length[t % 3];
     if (std::abs(here - there) > 1e-9 * here)
-      throw InvalidGeometry("faces " + std::to_string(h / 3) + " and " + std::to_string(t / 3) +
+      throw InvalidGeometry("faces " + std::to_string(face) + " and " + std::to_string(t / 3) +
                             " have different lengths for their common side: " + detail::number(here) + " and " +
                             detail::number(there));
   }
 }
 
-void PolyhedralSurface::set_fans(const HalfEdges& edges, std::span<const Half> corners) {
+void PolyhedralSurface::set_fans(const HalfEdges& edges, std::span<const Half> corners, unsigned threads) {
   const Index vertices = std::max(std::ranges::max(edges.tail) + 1, static_cast<Index>(corners.size()));
   std::vector<Index> corners_at(vertices, 0);
   corner_.resize(corners_at.size());
@@ -143,14 +149,14 @@ void PolyhedralSurface::set_fans(const HalfEdges& edges, std::span<const Half> c
     ++corners_at[edges.tail[h]];
     corner_[edges.tail[h]] = {h, true};
   }
-  detail::DisjointSets parts(corner_.size());
   angle_sum_.resize(corner_.size());
   on_boundary_.resize(corner_.size());
-  for (Index v = 0; v < vertices; ++v) {
+  detail::for_each_index(corner_.size(), threads, [&](std::size_t i) {
+    const auto v = static_cast<Index>(i);
     if (!corners.empty()) corner_[v].half = corners[v];
     if (corner_[v].half < 0 && !corners.empty() && corners_at[v] == 0) {
       on_boundary_[v] = 1;
-      continue;
+      return;
     }
     if (corner_[v].half < 0 || edges.tail[corner_[v].half] != v)
       throw InvalidGeometry("vertex " + std::to_string(v) + " has no face, or a corner of another vertex");
@@ -160,16 +166,19 @@ void PolyhedralSurface::set_fans(const HalfEdges& edges, std::span<const Half> c
     Corner at = corner_[v];
     do {
       angle_sum_[v] += angle(at.half);
-      parts.join(v, edges.head(at.half));
       at = turn_left(at);
     } while (++met < corners_at[v] && at.half >= 0 && at != corner_[v]);
     if (met != corners_at[v])
       throw InvalidGeometry("vertex " + std::to_string(v) + " joins several fans of faces; split it");
-  }
-  set_components(parts);
+  });
 }
 
-void PolyhedralSurface::set_components(detail::DisjointSets& parts) {
+void PolyhedralSurface::set_components() {
+  detail::DisjointSets parts(corner_.size());
+  for (const Face& face : face_) {
+    parts.join(face.tail[0], face.tail[1]);
+    parts.join(face.tail[0], face.tail[2]);
+  }
   component_.assign(corner_.size(), -1);
   for (Index v = 0; v < vertex_count(); ++v) {
     Index& number = component_[parts.root(v)];

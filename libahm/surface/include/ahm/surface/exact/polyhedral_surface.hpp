@@ -16,10 +16,6 @@
 #include "ahm/surface/detail/half_edges.hpp"
 #include "ahm/types.hpp"
 
-namespace ahm::detail {
-class DisjointSets;
-}
-
 namespace ahm::exact {
 
 using detail::Corner;
@@ -56,13 +52,15 @@ class PolyhedralSurface {
   /// @param sides    one per face; both faces of an edge have the same length for it to 1e-9
   /// @param corners  per vertex: a half-edge that starts there, whose face defines the orientation of the vertex; -1 for a
   ///                 vertex without faces; empty: the lowest half-edge
+  /// @param threads  0: one per core. No result depends on it
   /// @throws InvalidGeometry naming the face or half-edge: a side that is not finite or zero, a triangle flatter than 1e-13 of
   /// its longest side, sides that do not close, lengths that differ, twins that are not mutual or join other vertices, a vertex
   /// with several fans or none
-  PolyhedralSurface(const HalfEdges& edges, std::span<const FaceSides> sides, std::span<const Half> corners = {});
-  /// Calls `sides_of` for one face after the other.
+  PolyhedralSurface(const HalfEdges& edges, std::span<const FaceSides> sides, std::span<const Half> corners = {},
+                    unsigned threads = 1);
+  /// Calls `sides_of` once for each face, on several threads if `threads` is not 1.
   PolyhedralSurface(const HalfEdges& edges, const std::function<FaceSides(Index)>& sides_of,
-                    std::span<const Half> corners = {});
+                    std::span<const Half> corners = {}, unsigned threads = 1);
   /// Builds the surface from edge lengths: length s of a face is that of its side s. Flat cap triangles are accurate only to
   /// 1e-8.
   /// @throws InvalidGeometry (as the constructor)
@@ -141,9 +139,9 @@ class PolyhedralSurface {
     return detail::corner_beyond(twin, next(twin), (f.mirrored >> side % 3 & 1) != 0, vertex_is_tail, forward);
   }
   void set_face(Index face, const HalfEdges& edges, const FaceSides& sides);
-  void check_lengths() const;
-  void set_fans(const HalfEdges& edges, std::span<const Half> corners);
-  void set_components(detail::DisjointSets& parts);
+  void check_lengths(Index face) const;
+  void set_fans(const HalfEdges& edges, std::span<const Half> corners, unsigned threads);
+  void set_components();
 
   std::vector<Face> face_;
   std::vector<double> angle_sum_;
