@@ -69,6 +69,23 @@ TEST(PolarMap, IsExactOnPlanes) {
   }
 }
 
+/// In large meshes rays run along edges at angles as small as 1e-7. A path along such an edge is not noticeably longer.
+TEST(PolarMap, IsExactWhereRaysNearlyFollowEdges) {
+  for (unsigned seed : {1U, 2U}) {
+    const auto surface = surface_of(flat_square(200, 0.24, seed));
+    const Row source(20'100);
+    const Vec3 axis{0.3, 0.8, 0.1};
+    const SurfaceSource placed = surface.source(source, axis);
+    const LogMap map = PolarMapSolver(surface, {.windows = 0}).log_map(source, axis);
+    double error = 0;
+    for (Index i = 0; i < map.size(); ++i) {
+      const Vec3 d = surface.positions()[i] - placed.position;
+      error = std::max(error, length(Vec2{dot(d, placed.frame->x), dot(d, placed.frame->y)} - vector_at(map, i)));
+    }
+    EXPECT_LT(error, 1e-12);
+  }
+}
+
 // ------------------------------------------------------------------------------------------------ symmetries
 
 RowLogMap rows_of(const Mesh& mesh, Index source, Offset windows) {

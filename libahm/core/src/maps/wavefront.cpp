@@ -19,7 +19,7 @@ namespace ahm {
 namespace {
 
 /// Smallest relative improvement of a distance. Smaller ones are rounding.
-constexpr double least_gain = 1e-12;
+constexpr double least_gain = 1e-14;
 /// Paths whose lengths differ by less than `same_length` (relative) are equally long. Of these the one with the smaller focusing is
 /// chosen, so that rounding does not choose between paths through the same flat faces.
 constexpr double same_length = 1e-10, same_focusing = 1e-6;
@@ -37,6 +37,12 @@ bool comes_before(double distance, double focusing, double other, double other_f
   if (!(std::abs(distance - other) <= same_length * other)) return distance < other;
   const double gain = std::abs(other_focusing) - std::abs(focusing);
   return std::abs(gain) > same_focusing * std::abs(other_focusing) ? gain > 0 : distance < other * (1 - least_gain);
+}
+
+/// Whether a path that is not noticeably longer replaces one along an edge. If the front crosses the edge at a tiny angle, the detour
+/// along it is below `least_gain`, but the direction is wrong by the square root of that.
+bool straightens(double distance, bool follows_edge, double other, bool other_follows_edge) {
+  return !follows_edge && other_follows_edge && distance <= other * (1 + least_gain);
 }
 
 }  // namespace
@@ -131,7 +137,11 @@ void Wavefront::Impl::offer(Index vertex, Index point, double distance, double s
   Index own;
   bool is_added = false;
   if (const Entry* known = find(vertex, point)) {
-    if (!comes_before(distance, focusing, known->distance, known->focusing) || known->gains == most_gains) return;
+    if (!comes_before(distance, focusing, known->distance, known->focusing) &&
+        !(directions_ &&
+          straightens(distance, path.follows_edge(), known->distance, paths_[number(*known)].follows_edge())))
+      return;
+    if (known->gains == most_gains) return;
     distance = std::min(distance, known->distance);
     own = number(*known);
   } else {
@@ -213,7 +223,7 @@ void Wavefront::Impl::spread(Index from, Index point, double distance) {
     known.along = along;
     known.focusing = known.is_new ? focusing_along(corners[k], along) : entry ? entry->focusing : 0;
     if (directions_) {
-      known.path = known.is_new ? Path{own.direction, {}, {from, from}, 0, own.variance}
+      known.path = known.is_new ? Path{own.direction, {}, {from, distance > 0 ? from : none}, 0, own.variance}
                    : entry      ? path_of(entry)
                                 : Path{};
       if (known.is_new && corners[k].is_far) {  // through the middle between the other corners of the square
@@ -257,7 +267,9 @@ void Wavefront::Impl::spread(Index from, Index point, double distance) {
         crossing = bent_crossing(across.share, bend, base_length, length - to_side);
         length = bent;
       }
-      if (!comes_before(length, bent_by, found.distance, found.focusing)) return;
+      if (!comes_before(length, bent_by, found.distance, found.focusing) &&
+          !(directions_ && straightens(length, false, found.distance, found.path.follows_edge())))
+        return;
       found.distance = std::min(length, found.distance);
       found.focusing = bent_by;
       found.is_new = true;

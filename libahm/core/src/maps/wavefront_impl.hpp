@@ -33,13 +33,17 @@ struct Wavefront::Impl {
   };
   /// The geodesic path of an entry.
   struct Path {
-    Vec2 direction;                     ///< direction at the point, in the frame of the source
-    Vec2 arrival{};                     ///< direction at the vertex, in its frame; {0, 0}: from `last`; NaN: unknown
-    std::array<Index, 2> last{-1, -1};  ///< ends of the side that the path crosses last; equal: it follows an edge
-    float share = 0;                    ///< where the path crosses that side: 0 at the first end, 1 at the second
-    float variance = 0;                 ///< sum of squared differences of the direction estimates (`direction_error`)
-    float widening = 0;                 ///< ln(J / d): `widening_between`
-    bool mirrored = false;              ///< as `is_mirrored`
+    Vec2 direction;  ///< direction at the point, in the frame of the source
+    Vec2 arrival{};  ///< direction at the vertex, in its frame; {0, 0}: from `last`; NaN: unknown
+    std::array<Index, 2> last{
+        -1, -1};            ///< ends of the side that the path crosses last; equal: it follows an edge; -1: none
+    float share = 0;        ///< where the path crosses that side: 0 at the first end, 1 at the second
+    float variance = 0;     ///< sum of squared differences of the direction estimates (`direction_error`)
+    float widening = 0;     ///< ln(J / d): `widening_between`
+    bool mirrored = false;  ///< as `is_mirrored`
+
+    /// Whether the path may turn at the start of its last edge. At the source it does not.
+    bool follows_edge() const { return last[0] == last[1] && last[0] >= 0; }
   };
   /// A one-ring in the cache.
   struct CachedRing {
