@@ -148,6 +148,14 @@ TEST_F(OutputFiles, AtStandardOutputHaveNothingElse) {
   EXPECT_EQ(nlohmann::json::parse(cells.out.substr(0, cells.out.find('\n'))).at("index"), 0);
 }
 
+TEST_F(OutputFiles, MayBeAPictureOnly) {
+  run_ok("logmap plane.xyz -s 3 --view plane.png");
+  EXPECT_GT(std::filesystem::file_size("plane.png"), 1000u);
+  const auto outcome = run("logmap plane.xyz -s 3");
+  EXPECT_NE(outcome.status, 0);
+  EXPECT_TRUE(has(outcome.err, "--output or --view"));
+}
+
 TEST_F(OutputFiles, IncludePicturesAndPages) {
   for (const std::string name : {"map.png", "map.html"}) {
     const auto outcome = run("logmap sphere.xyz --source 0 -o map.csv --view " + name);

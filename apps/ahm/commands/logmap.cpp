@@ -480,7 +480,7 @@ void offer(CLI::App& app, LogmapCommand& command) {
   LogmapOptions& o = command.map;
   add_inputs(app, o.input, command.inputs);
   add_sources(app, command.sources);
-  auto* output = add_table_output(app, o.output);
+  add_table_output(app, o.output);
   add_parsed(app, "--corners", o.corners, non_empty, "CORNERS",
              "Output mesh with u,v at the corners of its faces, see below");
   auto* estimate = app.add_flag(
@@ -494,7 +494,9 @@ void offer(CLI::App& app, LogmapCommand& command) {
       throw CLI::ValidationError("--accuracy", "requires a march; leave it out with --strategy global");
     if (estimate->count() > 0) return;
     if (command.sources.empty()) throw CLI::RequiredError("--source");
-    if (output->count() == 0) throw CLI::RequiredError("--output");
+    const auto is_given = [&app](const char* name) { return app.count(name) > 0; };
+    if (std::ranges::none_of(std::array{"--output", "--view", "--corners", "--json"}, is_given))
+      throw CLI::RequiredError("--output or --view");
   });
   offer_method(app, o);
   add_cloud_options(app, o.input);

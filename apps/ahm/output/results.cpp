@@ -202,7 +202,7 @@ void Results::write(const io::Table& table, const render::Scene& scene, Journal&
                     const render::PictureOptions& picture) {
   write_view(scene, journal, picture);
   journal.start("write");
-  io::write(output_.output, table, output_.format);
+  if (!output_.output.empty()) io::write(output_.output, table, output_.format);
   journal.finish();
   journal.clear_display();
 }

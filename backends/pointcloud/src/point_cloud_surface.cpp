@@ -411,8 +411,9 @@ std::vector<Warning> PointCloudSurface::warnings() const {
   warn("duplicates", d.duplicates);
   warn("near_duplicates", d.near_duplicates);
   const double mean_edge = graph_->mean_edge_length() * graph_->length_unit();
-  // Regular grids may have such steps, too, but no duplicates.
-  if (d.coordinate_step > coarse_step * mean_edge && (d.coordinate_step < grid_step * mean_edge || d.duplicates > 0))
+  // Regular grids may have such steps, too, but no points at or near the same place.
+  if (d.coordinate_step > coarse_step * mean_edge &&
+      (d.coordinate_step < grid_step * mean_edge || d.duplicates + d.near_duplicates > 0))
     result.push_back({"coarse_coordinates", {d.coordinate_step, mean_edge}, {}, std::string(1, "xyz"[d.coarse_axis])});
   warn("thin_walls", d.rejected_normals);
   warn("reflections", d.reflections);

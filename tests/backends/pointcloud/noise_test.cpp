@@ -335,6 +335,12 @@ TEST(CloudWarnings, NameSinglePrecisionFarFromTheOrigin) {
   const auto coarse = PointCloudSurface::build(rounded(far));
   ASSERT_TRUE(find_warning(coarse, "coarse_coordinates"));
   EXPECT_EQ(coarse.details().coordinate_step, 1.0 / 32);  // at edges of about 0.04
+  // No two points are equal, but many lie close together.
+  std::vector<Vec3> rows = points;
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i][2] = 0.001 * static_cast<double>(i) / 1000;
+  const auto close = PointCloudSurface::build(rounded(joined({}, rows, {0, 4e5, 0})));
+  EXPECT_EQ(close.details().duplicates, 0);
+  EXPECT_TRUE(find_warning(close, "coarse_coordinates"));
   for (int axis = 0; axis < 3; ++axis) {
     Vec3 away{1e5, 1e5, 1e5};
     away[axis] = 4e5;
