@@ -141,23 +141,36 @@ std::vector<Noise> offset_noise(const CleanPoints& cloud, const Neighborhoods& n
   return noise;
 }
 
-std::vector<double> neighborhood_noise(const CleanPoints& cloud, const Neighborhoods& neighborhoods,
-                                       const TangentPlanes& planes, unsigned threads) {
+namespace {
+
+/// Mean squared offset of each point's nearest neighbors, divided by its median for a standard deviation of 1.
+std::vector<double> squared_noise(const CleanPoints& cloud, const Neighborhoods& neighborhoods,
+                                  const TangentPlanes& planes, unsigned threads) {
   const auto n = static_cast<Index>(cloud.points.size());
   const std::vector<double> offsets = offsets_of(cloud, neighborhoods, planes, 0, n, threads);
-  std::vector<double> mean_square(cloud.points.size(), 0.0), result = mean_square;
+  std::vector<double> result(cloud.points.size(), 0.0);
   for (Index i = 0; i < n; ++i) {
     double sum = 0, count = 0;
     for (const double offset : of_point(offsets, i))
       if (offset >= 0) sum += offset * offset, ++count;
-    if (count > 0) mean_square[i] = sum / count;
+    if (count > 0) result[i] = sum / (median_of_mean_square * count);
   }
+  return result;
+}
+
+}  // namespace
+
+std::vector<double> neighborhood_noise(const CleanPoints& cloud, const Neighborhoods& neighborhoods,
+                                       const TangentPlanes& planes, unsigned threads) {
+  const auto n = static_cast<Index>(cloud.points.size());
+  const std::vector<double> squares = squared_noise(cloud, neighborhoods, planes, threads);
+  std::vector<double> result(cloud.points.size(), 0.0);
   detail::parallel_chunks(n, points_per_task, threads, [&](Offset begin, Offset end) {
     std::vector<double> around;
     for (auto i = static_cast<Index>(begin); i < end; ++i) {
-      around.assign(1, mean_square[i]);
-      for (const Index j : neighborhoods.of(i)) around.push_back(mean_square[j]);
-      result[i] = std::sqrt(detail::value_at(std::span(around), around.size() / 2) / median_of_mean_square);
+      around.assign(1, squares[i]);
+      for (const Index j : neighborhoods.of(i)) around.push_back(squares[j]);
+      result[i] = std::sqrt(detail::value_at(std::span(around), around.size() / 2));
     }
   });
   return result;
@@ -222,7 +235,7 @@ NoisyPlanes find_noisy_planes(CleanPoints& cloud, std::span<const Vec3> normals,
   quiet.progress.report = nullptr;
   const int rounds = options.smooth ? 1 : max_rounds;
   for (int round = 0; round < rounds; ++round) {
-    const std::vector<char> noisy = find_noisy_parts(cloud, result, *search, options);
+    const std::vector<char> noisy = find_noisy_points(cloud, result, *search, options);
     if (std::find(noisy.begin(), noisy.end(), 1) == noisy.end() ||
         !smooth_points(cloud, result, noisy, *search, options))
       break;
@@ -241,6 +254,10 @@ namespace {
 /// offset are noisy, so each point then deviates by 0.085 spacings. Vertices of clean meshes of real shapes have 0.02 to 0.09,
 /// of a finely carved one 0.13.
 constexpr double noisy_share = 0.12;
+/// The same for regions of a part, where creases close together are easily taken for noise.
+constexpr double locally_noisy_share = 1.0 / 3;
+/// Rounds of averaging the share of noisy points over neighborhoods, about five spacings of standard deviation. Creases are narrower.
+constexpr int averaging_rounds = 10;
 /// Neighborhoods in noisy parts are smoothed above this lower fraction, because points at rest next to moved ones would make a
 /// step.
 constexpr double quiet_share = 0.06;
@@ -339,18 +356,57 @@ bool is_volume(const CleanPoints& cloud, const Neighborhoods& neighborhoods, std
 
 }  // namespace
 
-std::vector<char> find_noisy_parts(const CleanPoints& cloud, const NoisyPlanes& planes, const NeighborSearch& search,
-                                   const CloudOptions& options) {
-  std::vector<char> noisy(static_cast<std::size_t>(planes.parts->count), options.smooth && *options.smooth > 0);
-  if (options.smooth) return noisy;
-  const auto points = planes.parts->points();
-  for (std::size_t part = 0; part < points.size(); ++part)
-    noisy[part] = planes.noise.at(points[part].front()) > noisy_share * spacing(planes.neighborhoods, points[part]) &&
-                  (!cloud.smoothed.empty() || !is_volume(cloud, planes.neighborhoods, points[part], search));
+namespace {
+
+/// The points around which most points are noisy, within about ten spacings.
+std::vector<char> find_noisy_regions(const CleanPoints& cloud, const NoisyPlanes& planes, unsigned threads) {
+  const std::size_t n = cloud.points.size();
+  const std::vector<double> squares = squared_noise(cloud, planes.neighborhoods, planes.planes, threads);
+  std::vector<double> share(n), mean(n);
+  detail::for_each_index(n, threads, [&](std::size_t i) {
+    const double limit = locally_noisy_share * spacing_at(planes.neighborhoods, static_cast<Index>(i));
+    share[i] = squares[i] > limit * limit ? 1 : 0;
+  });
+  for (int round = 0; round < averaging_rounds; ++round) {
+    detail::for_each_index(n, threads, [&](std::size_t i) {
+      const auto neighbors = planes.neighborhoods.of(static_cast<Index>(i));
+      double sum = share[i];
+      for (const Index j : neighbors) sum += share[j];
+      mean[i] = sum / static_cast<double>(neighbors.size() + 1);
+    });
+    std::swap(share, mean);
+  }
+  std::vector<char> noisy(n);
+  for (std::size_t i = 0; i < n; ++i) noisy[i] = share[i] > 0.5;
   return noisy;
 }
 
-bool smooth_points(CleanPoints& cloud, const NoisyPlanes& planes, const std::vector<char>& noisy_parts,
+}  // namespace
+
+std::vector<char> find_noisy_points(const CleanPoints& cloud, const NoisyPlanes& planes, const NeighborSearch& search,
+                                    const CloudOptions& options) {
+  const std::size_t n = cloud.points.size();
+  if (options.smooth) return std::vector<char>(n, *options.smooth > 0);
+  const bool again = !cloud.smoothed.empty();
+  const std::vector<char> in_region = again ? cloud.smoothed : find_noisy_regions(cloud, planes, options.threads);
+  std::vector<std::vector<Index>> regions = planes.parts->points();
+  for (std::vector<Index>& region : regions)
+    if (again || !(planes.noise.at(region.front()) > noisy_share * spacing(planes.neighborhoods, region)))
+      std::erase_if(region, [&](Index i) { return in_region[i] == 0; });
+  std::erase_if(regions, [&](const auto& region) {
+    return region.empty() || (!again && is_volume(cloud, planes.neighborhoods, region, search));
+  });
+  const std::vector<Noise> noise =
+      again ? offset_noise(cloud, planes.neighborhoods, planes.planes, regions, options.threads) : std::vector<Noise>();
+  std::vector<char> noisy(n, 0);
+  for (std::size_t r = 0; r < regions.size(); ++r) {
+    if (again && !(noise[r].deviation > noisy_share * spacing(planes.neighborhoods, regions[r]))) continue;
+    for (const Index i : regions[r]) noisy[i] = 1;
+  }
+  return noisy;
+}
+
+bool smooth_points(CleanPoints& cloud, const NoisyPlanes& planes, const std::vector<char>& noisy,
                    const NeighborSearch& search, const CloudOptions& options) {
   const auto n = static_cast<Offset>(cloud.points.size());
   const std::vector<double> noise = neighborhood_noise(cloud, planes.neighborhoods, planes.planes, options.threads);
@@ -363,8 +419,7 @@ bool smooth_points(CleanPoints& cloud, const NoisyPlanes& planes, const std::vec
     std::vector<Index> within;
     std::vector<double> squared;
     for (auto i = static_cast<Index>(begin); i < end; ++i) {
-      if ((again && !cloud.smoothed[i]) || !noisy_parts[planes.parts->of_point[i]] || !planes.planes.has_plane(i))
-        continue;
+      if ((again && !cloud.smoothed[i]) || !noisy[i] || !planes.planes.has_plane(i)) continue;
       if (!options.smooth && !(noise[i] > quiet_share * spacing_at(planes.neighborhoods, i))) continue;
       std::span<const Index> neighbors = planes.neighborhoods.of(i);
       double radius = planes.neighborhoods.radius[i];

@@ -79,23 +79,23 @@ struct NoisyPlanes {
   Index merged = 0;     ///< number of points merged into another one
 };
 
-/// Finds neighbors and tangent planes of distinct points. Merges near points, smooths noisy parts, and repeats the search until
-/// no part is noisy or no point moves, at most five times. A radius in `CloudOptions::smooth` smooths once.
+/// Finds neighbors and tangent planes of distinct points. Merges near points, smooths noisy ones, and repeats the search until no
+/// point is noisy or none moves, at most five times. A radius in `CloudOptions::smooth` smooths once.
 /// @param cloud, search  changed if points are merged or moved
 NoisyPlanes find_noisy_planes(CleanPoints& cloud, std::span<const Vec3> normals,
                               std::unique_ptr<NeighborSearch>& search, const CloudOptions& options);
 
-/// Marks the parts that are noisy surfaces: the standard deviation of neighbors' offsets exceeds a fraction of the spacing. A
-/// radius in `CloudOptions::smooth` marks all parts, and 0 marks none.
-std::vector<char> find_noisy_parts(const CleanPoints& cloud, const NoisyPlanes& planes, const NeighborSearch& search,
-                                   const CloudOptions& options);
+/// Marks the points of noisy surfaces: the standard deviation of neighbors' offsets exceeds a fraction of the spacing, in the median of
+/// the whole part, or at most points around. A radius in `CloudOptions::smooth` marks all points, and 0 marks none.
+std::vector<char> find_noisy_points(const CleanPoints& cloud, const NoisyPlanes& planes, const NeighborSearch& search,
+                                    const CloudOptions& options);
 
-/// Moves points of noisy parts along the normals of their planes, and marks them in `cloud.smoothed`. Moves the points where
-/// the noise of the neighborhood is large, or all points with a radius in `CloudOptions::smooth`. The fit ignores neighbors in
-/// other sheets. A point stays in place if too few neighbors remain or the quadric is too far away.
+/// Moves noisy points along the normals of their planes, and marks them in `cloud.smoothed`. Moves the points where the noise of the
+/// neighborhood is large, or all points with a radius in `CloudOptions::smooth`. The fit ignores neighbors in other sheets. A point
+/// stays in place if too few neighbors remain or the quadric is too far away.
 /// @param planes  planes of the current points
 /// @return whether a point moved
-bool smooth_points(CleanPoints& cloud, const NoisyPlanes& planes, const std::vector<char>& noisy_parts,
+bool smooth_points(CleanPoints& cloud, const NoisyPlanes& planes, const std::vector<char>& noisy,
                    const NeighborSearch& search, const CloudOptions& options);
 
 }  // namespace ahm::pointcloud

@@ -40,6 +40,9 @@ constexpr double sharpest_cosine = 0.1;
 /// Neighbors in the other sheet of a thin wall: their planes are parallel, and the edge to them is steep.
 constexpr double parallel = 0.7, steep = 0.3;
 
+/// Share of neighbors that oppose a plane on the wrong side.
+constexpr double nearly_all = 0.8;
+
 /// How well planes fit the points around a point; 0 is best.
 struct Fit {
   double slope, disagreement;
@@ -102,6 +105,22 @@ bool is_beside_crease(const CleanPoints& cloud, const Neighborhoods& neighborhoo
   return found;
 }
 
+/// Very noisy normals may lie on the wrong side. Turns over contradicted planes that nearly all neighbors oppose. In a thin wall, neighbors
+/// of both sheets have opposite sides, but the own sheet has as many.
+void turn_outliers_over(const Neighborhoods& neighborhoods, const std::vector<char>& contradicted, unsigned threads,
+                        TangentPlanes& planes) {
+  std::vector<char> is_outlier(contradicted.size(), 0);
+  detail::for_each_index(contradicted.size(), threads, [&](std::size_t i) {
+    if (!contradicted[i]) return;
+    const auto neighbors = neighborhoods.of(static_cast<Index>(i));
+    const auto opposed =
+        std::ranges::count_if(neighbors, [&](Index j) { return dot(planes.normals[i], planes.normals[j]) < 0; });
+    is_outlier[i] = static_cast<double>(opposed) > nearly_all * static_cast<double>(neighbors.size());
+  });
+  for (std::size_t i = 0; i < is_outlier.size(); ++i)
+    if (is_outlier[i]) planes.normals[i] = -1.0 * planes.normals[i];
+}
+
 }  // namespace
 
 std::vector<char> apply_input_planes(const CleanPoints& cloud, const Neighborhoods& neighborhoods,
@@ -128,6 +147,7 @@ std::vector<char> apply_input_planes(const CleanPoints& cloud, const Neighborhoo
     else if (dot(planes.normals[i], given[i]) < 0)
       planes.normals[i] = -1.0 * planes.normals[i];
   }
+  turn_outliers_over(neighborhoods, contradicted, threads, planes);
   return missing;
 }
 

@@ -156,6 +156,36 @@ TEST(Smoothing, MovesNoisyPointsOntoTheSphereAndKeepsEveryRow) {
   }
 }
 
+TEST(Smoothing, IsLocal) {
+  const Index n = 8000;
+  const double h = sphere_spacing(n), noise = 0.5 * h;
+  const Cloud clean = random_sphere(n), moved = with_noise(clean, noise);
+  const auto is_noisy = [&](Index i) { return clean.points[i][2] > 0.8; };  // a tenth of the sphere
+  std::vector<Vec3> points = clean.points;
+  for (Index i = 0; i < n; ++i)
+    if (is_noisy(i)) points[i] = moved.points[i];
+  const auto cloud = PointCloudSurface::build(points);
+  double sum = 0, count = 0;
+  for (Index i = 0; i < n; ++i) {
+    if (clean.points[i][2] < 0.5) {
+      ASSERT_EQ(origin(cloud, i), points[i]);
+    }
+    if (clean.points[i][2] < 0.9) continue;  // the share of noisy points is small near the rim
+    const double height = norm(origin(cloud, i)) - 1;
+    sum += height * height, ++count;
+  }
+  EXPECT_LT(std::sqrt(sum / count), 0.5 * noise);
+}
+
+TEST(Smoothing, IsThatWithoutNormalsIfTheGivenNormalsAreVeryNoisy) {
+  const Index n = 4000;
+  const Cloud cloud = with_noisy_normals(noisy_sphere(n, 0.2), 0.5);  // one normal in fifty is on the wrong side
+  const auto with = PointCloudSurface::build(cloud.points, cloud.normals);
+  const auto without = PointCloudSurface::build(cloud.points);
+  EXPECT_EQ(with.details().smoothed, without.details().smoothed);
+  for (Index i = 0; i < n; ++i) ASSERT_LT(norm(origin(with, i) - origin(without, i)), 1e-13) << i;
+}
+
 TEST(Smoothing, IsAbsentOnCleanCloudsAndWhereItIsOff) {
   for (const Cloud& cloud : {random_sphere(5000), flat_cloud(2000), folded_cloud(60, 6, std::numbers::pi / 2)}) {
     const auto built = PointCloudSurface::build(cloud.points);
