@@ -26,6 +26,7 @@ Table margins(const Settings&);
 Table mazes(const Settings&);
 Table direct(const Settings&);
 Table mesh_scaling(const Settings&);
+Table method_scaling(const Settings&);
 Table methods_compared(const Settings&);
 Table polygons(const Settings&);
 Table radial(const Settings&);
@@ -109,6 +110,7 @@ std::span<const Experiment> experiments() {
       Experiment{"methods", "all", "All methods on the sphere",
                  "The paper compares with these methods, figure by figure.", methods_compared},
       Experiment{"mesh_scaling", "scaling", "Time and memory of meshes", "Not in the paper.", mesh_scaling},
+      Experiment{"method_scaling", "scaling", "Time and memory of every method", "Not in the paper.", method_scaling},
       Experiment{"cloud_scaling", "scaling", "Time and memory of clouds", "Not in the paper.", cloud_scaling},
       Experiment{"direct", "scaling", "The paper's systems by LU, compared with the elimination", "Not in the paper.",
                  direct},
