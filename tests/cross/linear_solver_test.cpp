@@ -169,17 +169,26 @@ std::vector<double> right_hand_sides(std::size_t count) {
   return b;
 }
 
+TEST(Cholmod, IsSupernodalForLargeFactorsIfAutomatic) {
+  for (const Offset side : {3, 120}) {
+    const SparseUpper K = grid_matrix(side, false);
+    const Offset automatic = cholmod_solver()(K, "K", 1)->nonzeros(),
+                 simplicial = cholmod_solver(CholmodFactorization::simplicial)(K, "K", 1)->nonzeros();
+    EXPECT_EQ(automatic > simplicial, side == 120);  // supernodes store zeros
+  }
+}
+
 TEST(Cholmod, GivesTheSameBitsOnManyThreads) {
   for (const CholmodFactorization factorization : factorizations)
     for (const bool is_complex : {false, true}) {
-      const SparseUpper K = grid_matrix(120, is_complex);  // large enough for a supernodal factor
+      const SparseUpper K = grid_matrix(120, is_complex);  // large enough for supernodes
       const auto solver = cholmod_solver(factorization)(K, "K", 1);
       check_residual(*solver, K, "K");
       constexpr Offset columns = 5;
       std::vector<double> expected = right_hand_sides(to_size(K.size()) * (is_complex ? 2 : 1) * columns);
       const std::vector<double> b = expected;
       solver->solve(expected, columns);
-      std::vector<std::vector<double>> found(8, b);
+      std::vector found(8, b);
       std::vector<std::thread> threads;
       for (auto& X : found) threads.emplace_back([&solver, &X] { solver->solve(X, columns, 2); });
       for (std::thread& thread : threads) thread.join();

@@ -455,8 +455,7 @@ void set_factor(const CLI::App& app, SolveOptions& o) {
       throw CLI::ValidationError(own, fmt::format("is for own factors; leave it out with --factor {}", o.factor));
   if (o.strategy == Strategy::march)
     throw CLI::ValidationError("--factor", "a march uses own factors; leave out --factor, or use --strategy global");
-  o.solver =
-      cholmod_solver(o.factor == "cholmod" ? CholmodFactorization::automatic : CholmodFactorization::simplicial);
+  o.solver = cholmod_solver(o.factor == "cholmod" ? CholmodFactorization::automatic : CholmodFactorization::simplicial);
 }
 
 CLI::Option* add_factor(CLI::App& app, SolveOptions& o) {

@@ -108,8 +108,7 @@ class CholmodSolver final : public LinearSolver {
     B.xtype = xtype_;
     B.dtype = CHOLMOD_DOUBLE;
     // The factor is only an input of cholmod_solve (cholmod_cholesky.h), so threads may share it.
-    const std::unique_ptr<cholmod_dense, FreeDense> result(
-        cholmod_l_solve(CHOLMOD_A, factor_.get(), &B, common.get()));
+    const std::unique_ptr<cholmod_dense, FreeDense> result(cholmod_l_solve(CHOLMOD_A, factor_.get(), &B, common.get()));
     common.check(name_.c_str());
     std::copy_n(static_cast<const double*>(result->x), X.size(), X.data());
   }

@@ -16,8 +16,8 @@ enum class CholmodFactorization {
   simplicial  ///< column by column, without a BLAS; uses only modules under the LGPL
 };
 
-/// Solvers that use CHOLMOD's LL^T factors [CDHR08], with CHOLMOD's default ordering: minimum degree, for large factors also METIS, and the one
-/// with less fill. Factorization and solves run on one BLAS thread, so results do not depend on the number of threads.
+/// Solvers that use CHOLMOD's LL^T factors [CDHR08] with CHOLMOD's default ordering: minimum degree, or METIS if that is worth trying and
+/// gives a smaller factor. Factorization and solves run on one BLAS thread, so results do not depend on the number of threads.
 /// The solvers throw `NotPositiveDefinite` and `ResourceExhausted`, as `SolverFactory` requires.
 /// @throws InvalidArgument (a build without CHOLMOD, AHM_WITH_CHOLMOD=OFF)
 SolverFactory cholmod_solver(CholmodFactorization factorization = CholmodFactorization::automatic);
