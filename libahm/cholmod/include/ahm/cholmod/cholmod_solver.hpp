@@ -17,7 +17,8 @@ enum class CholmodFactorization {
 };
 
 /// Solvers that use CHOLMOD's LL^T factors [CDHR08] with CHOLMOD's default ordering: minimum degree, or METIS if that is worth trying and
-/// gives a smaller factor. Factorization and solves run on one BLAS thread, so results do not depend on the number of threads.
+/// gives a smaller factor. Factorization and solves run on one BLAS thread, so results do not depend on the number of threads. To assemble
+/// supernodes, Debian's CHOLMOD uses four OpenMP threads, whatever `threads` is; the environment variable OMP_THREAD_LIMIT limits them.
 /// The solvers throw `NotPositiveDefinite` and `ResourceExhausted`, as `SolverFactory` requires.
 /// @throws InvalidArgument (a build without CHOLMOD, AHM_WITH_CHOLMOD=OFF)
 SolverFactory cholmod_solver(CholmodFactorization factorization = CholmodFactorization::automatic);
