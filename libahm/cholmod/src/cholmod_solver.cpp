@@ -136,7 +136,8 @@ SolverFactory cholmod_solver(CholmodFactorization factorization) {
 #else
 
 SolverFactory cholmod_solver(CholmodFactorization) {
-  throw InvalidArgument("cholmod_solver: this build has no CHOLMOD (AHM_WITH_CHOLMOD=OFF); use the own factorization");
+  throw InvalidArgument("no_cholmod", "this build has no CHOLMOD (AHM_WITH_CHOLMOD=OFF)",
+                        "use libahm's own factors: leave out cholmod_solver");
 }
 
 #endif
