@@ -97,7 +97,7 @@ TEST_F(Methods, ThatAreExactNeedFlatFaces) {
 
 TEST_F(Methods, ThatAreExactHaveNoOptionsOfHeat) {
   for (const std::string option :
-       {"--variant adaptive", "--strategy auto", "--t-coef 1", "--ordering amd", "--accuracy 1e-6"}) {
+       {"--variant adaptive", "--strategy auto", "--t-coef 1", "--ordering amd", "--factor own", "--accuracy 1e-6"}) {
     const std::string name = option.substr(0, option.find(' ')), command = "logmap square.obj -s 0 " + option;
     expect_refused(command, {{"-o map.csv --method exact", 2, {name}}});
     run_ok(command + " -o heat.csv --method heat");

@@ -91,6 +91,26 @@ TEST_F(Logmap, DoesNotDependOnTheSearch) {
   }
 }
 
+TEST_F(Logmap, DoesNotDependOnTheFactorization) {
+  write("sphere.xyz", xyz(sphere(1500)));
+#ifdef AHM_WITH_CHOLMOD
+  const auto expected = table("logmap sphere.xyz --source 0 --method heat --factor own");
+  for (const std::string factor : {"cholmod", "cholmod-simplicial"}) {
+    const auto json = summary("logmap sphere.xyz --source 0 -o map.csv --factor " + factor);
+    expect_values(json, {{"/method", "heat"}, {"/strategy", "global"}, {"/factor/factorization", factor}});
+    EXPECT_GT(number(json, "/factor/bytes"), 8 * number(json, "/factor/nonzeros_A"));
+    const auto rows = read_csv("map.csv");
+    ASSERT_EQ(rows.size(), expected.size());
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      for (const char* column : {"u", "v"}) ASSERT_NEAR(rows[i][column], expected[i][column], 1e-11) << i;
+  }
+#else
+  expect_refused("logmap sphere.xyz --source 0 -o map.csv",
+                 {{"--factor cholmod", 1, {"this build has no CHOLMOD", "AHM_WITH_CHOLMOD=OFF", "--factor own"}}});
+#endif
+  expect_values(summary("logmap sphere.xyz --source 0 -o map.csv --method heat"), {{"/factor/factorization", "own"}});
+}
+
 TEST_F(Logmap, DoesNotDependOnThreads) {
   write("sphere.xyz", xyz(sphere(2000)));
   for (const std::string threads : {"1", "3"})

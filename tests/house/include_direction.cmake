@@ -18,12 +18,14 @@ endfunction()
 file(GLOB backends RELATIVE "${ROOT}/backends" "${ROOT}/backends/*")
 list(JOIN backends "|" any_backend)
 
-# The computing libraries: core <- surface <- applications.
-foreach(room util core surface applications)
-  forbid(libahm/${room} "ahm/(${any_backend}|pcl|io|render|viewer)/" "the computing libraries include no backend, no file format, no pictures")
+# The computing libraries: cholesky <- core <- surface <- applications.
+foreach(room util cholesky core surface applications)
+  forbid(libahm/${room} "ahm/(cholmod|${any_backend}|pcl|io|render|viewer)/"
+    "the computing libraries include no backend, no file format, no pictures")
   forbid(libahm/${room} "(iostream|fstream|filesystem)>" "they do not print, and read the limits of the process only" "memory_limits")
-  forbid(libahm/${room} "cholmod" "the computing libraries do without SuiteSparse")
 endforeach()
+forbid(libahm "(suitesparse/)?cholmod\\.h" "CHOLMOD appears in libahm/cholmod only" "libahm/cholmod/")
+forbid(libahm/cholmod "ahm/(graph|heat|maps|fields|surface|applications|${any_backend}|pcl|io|render)/" "ahm::cholmod needs ahm::cholesky only")
 # Builds without threads: these headers are missing or empty there. <mutex> is for std::call_once only.
 foreach(folder libahm/core libahm/surface libahm/applications backends/trimesh backends/polymesh backends/pointcloud/src backends/grid)
   forbid(${folder} "(thread|stop_token|condition_variable)>" "use ahm/util/parallel.hpp, ahm/util/mutex.hpp and ahm/stop_token.hpp")

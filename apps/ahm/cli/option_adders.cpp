@@ -222,7 +222,8 @@ CLI::Option* add_method(CLI::App& app, SolveOptions& o, std::vector<Method> meth
   if (chosen) o.method.reset();
   app.parse_complete_callback([&app, &o] {
     if (o.method == Method::heat) return;
-    for (const char* name : {"--variant", "--strategy", "--t-coef", "--ordering", "--accuracy", "--estimate"}) {
+    for (const char* name :
+         {"--variant", "--strategy", "--t-coef", "--ordering", "--factor", "--accuracy", "--estimate"}) {
       const CLI::Option* option = app.get_option_no_throw(name);
       if (option == nullptr || option->count() == 0) continue;
       if (o.method)

@@ -45,6 +45,7 @@ struct InputOptions {
 /// Options of the computation of maps.
 struct SolveOptions : HeatOptions {
   std::optional<Method> method = Method::heat;  ///< none: the method that suits the surface
+  std::string factor = "own";                   ///< own, cholmod, cholmod-simplicial; `solver` makes its factors
   std::optional<double> radius;
 };
 

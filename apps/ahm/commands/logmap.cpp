@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "ahm/cholmod/cholmod_solver.hpp"
 #include "ahm/error.hpp"
 #include "ahm/io/atomic_file.hpp"
 #include "ahm/io/formats.hpp"
@@ -106,8 +107,9 @@ nlohmann::ordered_json source_as_json(const LogmapRun& run) {
   return j;
 }
 
-nlohmann::ordered_json factor_as_json(const FactorStatistics& s) {
-  return {{"assemble_seconds", s.assemble_seconds},
+nlohmann::ordered_json factor_as_json(const std::string& factorization, const FactorStatistics& s) {
+  return {{"factorization", factorization},
+          {"assemble_seconds", s.assemble_seconds},
           {"analyze_seconds", s.analyze_seconds},
           {"factor_seconds", s.factor_seconds},
           {"nonzeros_A", s.nonzeros_A},
@@ -134,7 +136,7 @@ nlohmann::ordered_json as_json(const LogmapRun& run, const OutputOptions& output
   j["source"] = source_as_json(run);
   j[std::string(run.input.backend->name)] = app::as_json(run.input.built.report);
   if (run.solver && run.solver->strategy() == Strategy::global)
-    j["factor"] = factor_as_json(run.solver->operators().statistics());
+    j["factor"] = factor_as_json(run.options.factor, run.solver->operators().statistics());
   if (const MarchStatistics& m = run.map.march(); m.bands > 0)
     j["march"] = {{"bands", m.bands}, {"largest_band", m.largest_band}, {"solved_vertices", m.solved}};
   return j;
@@ -445,6 +447,23 @@ void run(const LogmapCommand& command) {
   if (failed > 0) throw Error(fmt::format("{} of {} failed", failed, counted(count, "map")));
 }
 
+/// Sets `solver` for --factor. @throws InvalidArgument (this build has no CHOLMOD), CLI::ValidationError
+void set_factor(const CLI::App& app, SolveOptions& o) {
+  if (o.factor == "own") return;
+  for (const char* own : {"--ordering", "--estimate"})
+    if (app.count(own) > 0)
+      throw CLI::ValidationError(own, fmt::format("is for own factors; leave it out with --factor {}", o.factor));
+  if (o.strategy == Strategy::march)
+    throw CLI::ValidationError("--factor", "a march uses own factors; leave out --factor, or use --strategy global");
+  o.solver = cholmod_solver(o.factor == "cholmod" ? CholmodFactorization::automatic : CholmodFactorization::simplicial);
+}
+
+CLI::Option* add_factor(CLI::App& app, SolveOptions& o) {
+  return add_parsed(app, "--factor", o.factor, choice({"own", "cholmod", "cholmod-simplicial"}), "NAME",
+                    "Library of the factorization, for comparisons: own (default), cholmod (SuiteSparse), or\n"
+                    "cholmod-simplicial (its factorization without supernodes). Not for a march");
+}
+
 void offer_method(CLI::App& app, LogmapOptions& o) {
   const char* group = "Method";
   add_method(app, o.solve, {Method::polar, Method::exact}, true)->group(group);
@@ -460,6 +479,7 @@ void offer_method(CLI::App& app, LogmapOptions& o) {
           {{"auto", Ordering::automatic}, {"amd", Ordering::amd}, {"nested-dissection", Ordering::nested_dissection}}),
       "NAME", "Ordering of the factorization: auto (default), amd, nested-dissection")
       ->group(group);
+  add_factor(app, o.solve)->group(group);
   add_strategy(app, o.solve)->group(group);
   add_parsed(app, "--accuracy", o.solve.accuracy, parse_positive, "A",
              "Relative accuracy of a march, compared with a global solve (default 1e-9)")
@@ -492,6 +512,7 @@ void offer(CLI::App& app, LogmapCommand& command) {
     if (o.input.around_source && !o.solve.radius) throw CLI::ValidationError("--local", "requires --radius");
     if (o.solve.strategy == Strategy::global && app.count("--accuracy") > 0)
       throw CLI::ValidationError("--accuracy", "requires a march; leave it out with --strategy global");
+    set_factor(app, o.solve);
     if (estimate->count() > 0) return;
     if (command.sources.empty()) throw CLI::RequiredError("--source");
     const auto is_given = [&app](const char* name) { return app.count(name) > 0; };

@@ -27,6 +27,7 @@ constexpr Advice advices[] = {
     {"non_manifold_edges", "cut the mesh there with --non-manifold split, or repair it with --repair"},
     {"non_manifold_vertices", "split the mesh there with --non-manifold split, or repair it with --repair"},
     {"diffusion_time_range", "use a --t-coef near 1"},
+    {"no_cholmod", "use --factor own"},
     {"heat_not_conserved", "use a smaller --t-coef"},
     {"not_positive_definite", join_points},
     {"ill_conditioned", join_points},

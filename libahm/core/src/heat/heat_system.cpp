@@ -5,9 +5,9 @@
 #include <mutex>
 #include <optional>
 #include <string>
-#include <tuple>
 
 #include "ahm/cholesky/conjugate_gradient.hpp"
+#include "ahm/cholesky/linear_solver.hpp"
 #include "ahm/error.hpp"
 #include "ahm/graph/validate.hpp"
 #include "ahm/util/parallel.hpp"
@@ -170,12 +170,11 @@ double max_difference_from_one(std::span<const double> values) {
 
 /// Checks the residual and the conservation of heat with one solve.
 /// @param masses  masses times c
-void check_A(const CholeskyFactor& A, const SparseUpper& matrix, std::vector<double> masses, unsigned threads) {
-  check_conservation(max_difference_from_one(A.checked_solve(matrix, std::move(masses), name_A, threads)));
+void check_A(const LinearSolver& A, const SparseUpper& matrix, std::vector<double> masses, unsigned threads) {
+  check_conservation(max_difference_from_one(checked_solve(A, matrix, std::move(masses), name_A, threads)));
 }
 
-/// A and B with one solver each: CholeskyFactor or ConjugateGradient.
-template <class Solver>
+/// A and B with one solver each.
 class SolverSystem final : public HeatSystem {
  public:
   SolverSystem(std::vector<double> tau, double scaling) : HeatSystem(std::move(tau), scaling) {}
@@ -190,7 +189,7 @@ class SolverSystem final : public HeatSystem {
     statistics_.nonzeros_B = B->nonzeros();
   }
 
-  std::optional<Solver> A, B;
+  std::unique_ptr<const LinearSolver> A, B;
 };
 
 /// Factors A at once, and B on the first solve with it. Keeps the matrices until then.
@@ -210,7 +209,7 @@ class DeferredSystem final : public HeatSystem {
     std::call_once(factored_, [&] {
       check();
       B_.emplace(matrices_.B, analysis_->of_B(matrices_.B, dimension_), name_B, threads_);
-      B_->check(matrices_.B, name_B, threads_);
+      check_residual(*B_, matrices_.B, name_B, threads_);
       masses_ = {};
       matrices_ = {};
       analysis_.reset();
@@ -232,16 +231,51 @@ class DeferredSystem final : public HeatSystem {
   mutable std::optional<CholeskyFactor> B_;
 };
 
-/// Makes a system, checks the masses and assembles the matrices.
-template <class System>
-std::pair<std::unique_ptr<System>, AssembledOperators> begin(const TangentGraph& graph, std::vector<double> tau,
-                                                             const FactorOptions& options) {
-  auto system = std::make_unique<System>(std::move(tau), mass_scaling(mean_mass(graph)));
+/// Makes a system without solvers, checks the masses and assembles the matrices.
+std::pair<std::unique_ptr<SolverSystem>, AssembledOperators> begin(const TangentGraph& graph, std::vector<double> tau,
+                                                                   const FactorOptions& options) {
+  auto system = std::make_unique<SolverSystem>(std::move(tau), mass_scaling(mean_mass(graph)));
   options.progress.step("assemble", 0.0);
   detail::Stopwatch stopwatch;
   AssembledOperators matrices = assemble(graph, system->tau(), system->scaling());
   system->statistics_to_fill().assemble_seconds = stopwatch.lap();
   return {std::move(system), std::move(matrices)};
+}
+
+/// Calls `options.solver`. @throws InvalidArgument (it returns no solver)
+std::unique_ptr<const LinearSolver> made_solver(const FactorOptions& options, const SparseUpper& matrix,
+                                                const char* name) {
+  std::unique_ptr<const LinearSolver> solver = options.solver(matrix, name, options.threads);
+  if (!solver) throw InvalidArgument(std::string("'solver' returned no solver for operator ") + name);
+  return solver;
+}
+
+/// Makes and checks both solvers by `options.solver`, one after the other.
+void make_solvers(SolverSystem& system, const AssembledOperators& matrices, std::vector<double> masses,
+                  const FactorOptions& options) {
+  system.A = made_solver(options, matrices.A, name_A);
+  check_A(*system.A, matrices.A, std::move(masses), options.threads);
+  system.B = made_solver(options, matrices.B, name_B);
+  check_residual(*system.B, matrices.B, name_B, options.threads);
+}
+
+/// Factors both matrices and checks the factors.
+void factor(SolverSystem& system, const AssembledOperators& matrices, Analysis& analysis, int dimension,
+            std::vector<double> masses, const FactorOptions& options) {
+  const SymbolicCholesky& of_B = analysis.of_B(matrices.B, dimension);
+  // Large factors: one after the other, each on all threads. Small factors: at the same time, one thread each.
+  const bool in_turn = of_B.is_shared();
+  const unsigned each = in_turn ? options.threads : 1;
+  detail::run_both(
+      in_turn ? 1 : options.threads,
+      [&] {
+        system.A = std::make_unique<CholeskyFactor>(matrices.A, analysis.of_A(), name_A, each);
+        check_A(*system.A, matrices.A, std::move(masses), each);
+      },
+      [&] {
+        system.B = std::make_unique<CholeskyFactor>(matrices.B, of_B, name_B, each);
+        check_residual(*system.B, matrices.B, name_B, each);
+      });
 }
 
 }  // namespace
@@ -271,6 +305,8 @@ void check_heat_options(const TangentGraph& graph, const HeatOptions& options) {
     throw InvalidArgument("accuracy is " + detail::number(options.accuracy) + "; it must be in [1e-14, 0.1]");
   if (options.expected_maps < 0)
     throw InvalidArgument("expected_maps is " + std::to_string(options.expected_maps) + "; it must be >= 0 (0: many)");
+  if (options.solver && options.strategy == Strategy::march)
+    throw InvalidArgument("a march uses libahm's own factors; leave out 'solver', or use strategy 'global'");
   check_diffusion(graph, options.factor());
 }
 
@@ -284,34 +320,25 @@ void check_diffusion(const TangentGraph& graph, const FactorOptions& options) {
 
 std::unique_ptr<const HeatSystem> factored_system(const TangentGraph& graph, std::vector<double> tau,
                                                   const FactorOptions& options) {
-  std::unique_ptr<SolverSystem<CholeskyFactor>> system;
-  AssembledOperators matrices;
-  std::tie(system, matrices) = begin<SolverSystem<CholeskyFactor>>(graph, std::move(tau), options);
+  auto [system, matrices] = begin(graph, std::move(tau), options);
+  std::vector<double> masses = scaled_masses(graph, system->scaling());
   detail::Stopwatch stopwatch;
-  options.progress.step("analyze", 0.0);
-
-  Analysis analysis(matrices, options);
-  const SymbolicCholesky& of_B = analysis.of_B(matrices.B, graph.dimension());
-  system->statistics_to_fill().analyze_seconds = stopwatch.lap();
+  std::optional<Analysis> analysis;
+  if (!options.solver) {
+    options.progress.step("analyze", 0.0);
+    analysis.emplace(matrices, options);
+    analysis->of_B(matrices.B, graph.dimension());
+    system->statistics_to_fill().analyze_seconds = stopwatch.lap();
+  }
   options.progress.step("factor", 0.0);
-
-  // Large factors: one after the other, each on all threads. Small factors: at the same time, one thread each.
-  const bool in_turn = of_B.is_shared();
-  const unsigned each = in_turn ? options.threads : 1;
-  detail::run_both(
-      in_turn ? 1 : options.threads,
-      [&] {
-        system->A.emplace(matrices.A, analysis.of_A(), name_A, each);
-        check_A(*system->A, matrices.A, scaled_masses(graph, system->scaling()), each);
-      },
-      [&] {
-        system->B.emplace(matrices.B, of_B, name_B, each);
-        system->B->check(matrices.B, name_B, each);
-      });
+  if (analysis)
+    factor(*system, matrices, *analysis, graph.dimension(), std::move(masses), options);
+  else
+    make_solvers(*system, matrices, std::move(masses), options);
   system->statistics_to_fill().factor_seconds = stopwatch.lap();
   options.progress.step("factor", 1.0);
   system->finish();
-  return system;
+  return std::move(system);
 }
 
 std::unique_ptr<const HeatSystem> deferred_system(const TangentGraph& graph, std::vector<double> tau,
@@ -321,9 +348,9 @@ std::unique_ptr<const HeatSystem> deferred_system(const TangentGraph& graph, std
 
 std::unique_ptr<const HeatSystem> iterative_system(const TangentGraph& graph, std::vector<double> tau,
                                                    const FactorOptions& options) {
-  auto [system, matrices] = begin<SolverSystem<ConjugateGradient>>(graph, std::move(tau), options);
-  system->A.emplace(matrices.A, name_A);
-  system->B.emplace(matrices.B, name_B);
+  auto [system, matrices] = begin(graph, std::move(tau), options);
+  system->A = std::make_unique<ConjugateGradient>(matrices.A, name_A);
+  system->B = std::make_unique<ConjugateGradient>(matrices.B, name_B);
   check_conservation(conservation_residual(*system, graph, graph.size()));
   system->finish();
   return std::move(system);

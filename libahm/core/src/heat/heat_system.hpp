@@ -66,14 +66,14 @@ double conservation_residual(const HeatSystem& system, const TangentGraph& graph
 /// Checks a `conservation_residual`. @throws NotPositiveDefinite (it is too large)
 void check_conservation(double lost);
 
-/// A system that solves by Cholesky factors.
+/// A system that solves by Cholesky factors, or by the solvers that `options.solver` makes.
 /// @param tau  diffusion time of each vertex, equal at both ends of an edge
 /// @throws as `HeatOperators`
 std::unique_ptr<const HeatSystem> factored_system(const TangentGraph& graph, std::vector<double> tau,
                                                   const FactorOptions& options);
 
 /// As `factored_system`, but the first `solve_B` checks the factor of A and factors B. If the caller never solves with B, it must call
-/// `check` before it uses results of A. The statistics are empty.
+/// `check` before it uses results of A. The statistics are empty. Ignores `options.solver`.
 /// @throws as `HeatOperators`; the first `solve_B` throws the same errors
 std::unique_ptr<const HeatSystem> deferred_system(const TangentGraph& graph, std::vector<double> tau,
                                                   const FactorOptions& options);

@@ -249,6 +249,7 @@ Cost estimate_cost(const GraphSize& size, Strategy strategy, unsigned threads) {
 
 Strategy choose_strategy(const GraphSize& size, const HeatOptions& options) {
   if (options.strategy != Strategy::automatic) return options.strategy;
+  if (options.solver) return Strategy::global;
   if (options.expected_maps == 1 && size.vertices >= (size.dimension > 2 ? march_volumes_from : march_from))
     return Strategy::march;
   const double memory = options.memory > 0 ? static_cast<double>(options.memory) : 0.5 * machine_memory();

@@ -84,6 +84,7 @@ March::March(const TangentGraph& graph, const HeatOptions& options, const MarchS
       found_(d_ + 2),
       nan_(d_, NAN) {
   options_.progress = {};
+  options_.solver = {};  // bands have libahm's own factors
   options_.threads = threads;
 }
 

@@ -18,20 +18,10 @@
 #include <string>
 #include <vector>
 
+#include "ahm/cholesky/linear_solver.hpp"
 #include "ahm/types.hpp"
 
 namespace ahm {
-
-/// The upper triangle of a symmetric (real) or Hermitian (complex) matrix in compressed columns. Rows of a column ascend without
-/// duplicates and include the diagonal. Complex entries are interleaved pairs.
-struct SparseUpper {
-  bool is_complex = false;
-  std::vector<Offset> column_begin;  ///< columns + 1
-  std::vector<Offset> rows;
-  std::vector<double> values;  ///< 1 number per real entry, 2 per complex entry
-
-  Offset size() const { return static_cast<Offset>(column_begin.size()) - 1; }
-};
 
 /// Fill-reducing ordering.
 enum class Ordering {
@@ -72,7 +62,7 @@ class SymbolicCholesky {
 };
 
 /// A factor K = LL^T. Immutable; `solve` may be called from many threads at once.
-class CholeskyFactor {
+class CholeskyFactor final : public LinearSolver {
  public:
   /// Factorizes, and checks that every pivot is finite and positive.
   /// @param name     name of the matrix, for messages
@@ -82,17 +72,10 @@ class CholeskyFactor {
 
   /// X <- K^-1 X, column major; complex vectors as interleaved pairs.
   /// @param threads  number of threads, used for large factors and up to four columns; the result has the same bits for any number
-  void solve(std::span<double> X, Offset columns, unsigned threads = 1) const;
-  /// Solves for one column and checks that the residual is small.
-  /// @param matrix  K
-  /// @throws NotPositiveDefinite
-  std::vector<double> checked_solve(const SparseUpper& matrix, std::vector<double> b, const char* name,
-                                    unsigned threads = 1) const;
-  /// Runs `checked_solve` with a pseudorandom right-hand side in [-1, 1).
-  void check(const SparseUpper& matrix, const char* name, unsigned threads = 1) const;
+  void solve(std::span<double> X, Offset columns, unsigned threads = 1) const override;
 
-  Offset nonzeros() const noexcept;
-  std::size_t bytes() const noexcept;
+  Offset nonzeros() const noexcept override;
+  std::size_t bytes() const noexcept override;
 
  private:
   SupernodalFactor factor() const;

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "ahm/cholesky/cholesky.hpp"
+#include "ahm/cholesky/linear_solver.hpp"
 
 namespace ahm {
 
@@ -17,7 +17,7 @@ namespace ahm {
 ///
 /// Errors are relative to the largest value of x. So, unlike a factorization, this solver loses heat that has decayed by more than
 /// the precision of a double. The bands of a march are thin enough to avoid this.
-class ConjugateGradient {
+class ConjugateGradient final : public LinearSolver {
  public:
   /// @param name  name of the operator, for messages
   /// @throws NotPositiveDefinite (a diagonal entry is not positive)
@@ -25,11 +25,11 @@ class ConjugateGradient {
 
   /// X <- K^-1 X, column major, on the calling thread.
   /// @throws NotPositiveDefinite (a direction of negative energy, or no convergence)
-  void solve(std::span<double> X, Offset columns, unsigned threads = 1) const;
+  void solve(std::span<double> X, Offset columns, unsigned threads = 1) const override;
 
   /// Number of entries above the diagonal.
-  Offset nonzeros() const noexcept { return static_cast<Offset>(values_.size()); }
-  std::size_t bytes() const noexcept { return values_.size() * (sizeof(double) + sizeof(Index)); }
+  Offset nonzeros() const noexcept override { return static_cast<Offset>(values_.size()); }
+  std::size_t bytes() const noexcept override { return values_.size() * (sizeof(double) + sizeof(Index)); }
 
  private:
   void solve(std::span<double> x) const;

@@ -30,6 +30,7 @@ struct FactorOptions {
   bool check_graph = true;  ///< run `validate(graph)` first: O(n)
   unsigned threads = 0;     ///< 0: one per core. No result depends on it
   Progress progress = {};
+  SolverFactory solver = {};  ///< makes the solvers of both operators; empty: libahm's own `CholeskyFactor`
 };
 
 /// Options of the diffusion, for computations on parts of a graph (`local_maps`, `local_coordinates`).
@@ -64,8 +65,13 @@ struct HeatOptions {
   unsigned threads = 0;  ///< 0: one per core. No result depends on it
   Progress progress = {};
 
+  /// Makes the solvers of the whole graph's operators, by another library (`cholmod_solver`); empty: libahm's own `CholeskyFactor`.
+  /// With a solver `automatic` is `global`, `march` is an error, and `ordering` is ignored: the other library chooses its own.
+  /// Maps that heat does not reach are still continued by a march, which uses libahm's own factors.
+  SolverFactory solver = {};
+
   DiffusionOptions diffusion() const { return {t_coef, variant, check_graph, threads, progress}; }
-  FactorOptions factor() const { return {t_coef, ordering, check_graph, threads, progress}; }
+  FactorOptions factor() const { return {t_coef, ordering, check_graph, threads, progress, solver}; }
 };
 
 }  // namespace ahm

@@ -51,7 +51,7 @@ Cost estimate_cost(const TangentGraph& graph, const Source& source, Strategy str
                    double radius = std::numeric_limits<double>::infinity());
 
 /// The strategy of the options. `automatic` becomes `march` for a single map of a large graph, or if the factors would need more than
-/// the allowed memory; else `global`.
+/// the allowed memory; else, and always with `HeatOptions::solver`, `global`.
 Strategy choose_strategy(const GraphSize& size, const HeatOptions& options);
 
 /// Bytes of memory that this process may use: the memory of the machine, or the limit of its control groups (containers) or resource
