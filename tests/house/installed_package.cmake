@@ -13,3 +13,13 @@ run(${CMAKE_COMMAND} --build ${WORK}/build)
 run(${WORK}/build/consumer)
 run(${WORK}/build/checked_consumer)
 run(${WORK}/build/contract_consumer)
+
+# A consumer without CMake.
+find_program(PKG_CONFIG pkg-config REQUIRED)
+file(GLOB_RECURSE described ${WORK}/prefix/*/ahm-ahm.pc)
+get_filename_component(folder "${described}" DIRECTORY)
+set(ENV{PKG_CONFIG_PATH} "${folder}")
+execute_process(COMMAND ${PKG_CONFIG} --cflags --libs ahm-ahm OUTPUT_VARIABLE flags COMMAND_ERROR_IS_FATAL ANY)
+separate_arguments(flags UNIX_COMMAND "${flags}")
+run(${CXX} ${CONSUMER}/../consumer.cpp -o ${WORK}/described_consumer ${flags})
+run(${WORK}/described_consumer)
