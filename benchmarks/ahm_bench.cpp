@@ -1,8 +1,10 @@
 // ahm-bench list | run NAME...|all -o DIR [--toy] [--meshes FOLDER] [--vertices N...] | report -o DIR | kernels [...]
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdlib>
 
 #include "ahm/error.hpp"
 #include "experiments/report.hpp"
@@ -47,9 +49,18 @@ int run(const std::vector<std::string>& names, const std::string& folder, const 
   return failed > 0;
 }
 
+/// CHOLMOD, which other methods use, calls OpenMP. GNU's OpenMP hangs in processes that are forked after its threads have started, as for
+/// measurements of memory. It reads its limit before `main`, so the program starts again with one thread.
+void limit_openmp(char** argv) {
+  if (std::getenv("OMP_THREAD_LIMIT") != nullptr) return;
+  setenv("OMP_THREAD_LIMIT", "1", 1);
+  execv("/proc/self/exe", argv);  // returns only if there is no /proc
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
+  limit_openmp(argv);
   CLI::App app("The experiments of Soliman & Sharp 2025, \"The Affine Heat Method\", repeated; scaling; kernels");
   app.require_subcommand(1);
   std::vector<std::string> names;
