@@ -1,4 +1,4 @@
-// Time and memory of every method over sizes, from triangles or points, beside the time that reading the data takes at least.
+// Time and memory of every method over sizes, compared with the time that reading the data takes at least.
 #include <fmt/format.h>
 
 #include <algorithm>
