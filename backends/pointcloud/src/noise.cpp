@@ -388,7 +388,9 @@ std::vector<char> find_noisy_points(const CleanPoints& cloud, const NoisyPlanes&
   const std::size_t n = cloud.points.size();
   if (options.smooth) return std::vector<char>(n, *options.smooth > 0);
   const bool again = !cloud.smoothed.empty();
-  const std::vector<char> in_region = again ? cloud.smoothed : find_noisy_regions(cloud, planes, options.threads);
+  const std::vector<char> in_region = again                 ? cloud.smoothed
+                                      : options.parts_apart ? find_noisy_regions(cloud, planes, options.threads)
+                                                            : std::vector<char>(n, 0);
   std::vector<std::vector<Index>> regions = planes.parts->points();
   for (std::vector<Index>& region : regions)
     if (again || !(planes.noise.at(region.front()) > noisy_share * spacing(planes.neighborhoods, region)))

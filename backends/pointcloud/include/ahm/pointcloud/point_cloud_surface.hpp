@@ -43,8 +43,8 @@ struct CloudOptions {
   /// the spacing, over the k neighbors. 0: off. Otherwise all points are smoothed, with neighborhoods of this radius, world
   /// units, at most the size of the cloud. The time grows with the number of points within the radius.
   std::optional<double> smooth;
-  /// Measure noise, and decide about smoothing, separately for each part that shares no neighbors with the rest. The result for a
-  /// part then does not depend on the rest of the file. false: one decision for all points, as for tiled clouds.
+  /// Measure noise, and decide about smoothing, separately for each part that shares no neighbors with the rest, and for noisy regions
+  /// of it. The result for a part then does not depend on the rest of the file. false: one decision for all points, as for tiled clouds.
   bool parts_apart = true;
   /// The rows to build from, ascending, for example those that remain after filters. Not set: all rows. Other rows get the status
   /// `removed` and may contain any values.
