@@ -83,11 +83,8 @@ Index Surface::nearest(const Vec3& point) const {
 }
 
 void for_user_surfaces(const Settings& settings, Index largest, const std::function<void(const Surface&)>& use) {
-  for (const NamedMesh& mesh : user_meshes(settings, largest)) try {
-      use(Surface(mesh.name, mesh));
-    } catch (const Error& e) {
-      fmt::print(stderr, "left out: {}: {}\n", mesh.name, e.what());
-    }
+  for (const NamedMesh& mesh : user_meshes(settings, largest))
+    run_or_leave_out(mesh.name, [&] { use(Surface(mesh.name, mesh)); });
 }
 
 std::span<const NamedMethod> log_map_methods() {

@@ -142,11 +142,8 @@ Table costs(const Settings& settings) {
         NamedMesh{bumpy_sphere(size(40962)), "bumpy sphere"},
         NamedMesh{jittered_icosphere(size(163842), 0.15), "sphere"}})
     measure(mesh, settings.threads, table);
-  for (const NamedMesh& mesh : user_meshes(settings, largest_mesh)) try {
-      measure(mesh, settings.threads, table);
-    } catch (const Error& e) {
-      fmt::print(stderr, "left out: {}: {}\n", mesh.name, e.what());
-    }
+  for (const NamedMesh& mesh : user_meshes(settings, largest_mesh))
+    run_or_leave_out(mesh.name, [&] { measure(mesh, settings.threads, table); });
   const auto median = [&](const char* method, const char* column) {
     return quantile(table.where("method", method).numbers(column), 0.5);
   };

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <optional>
 
-#include "ahm/error.hpp"
 #include "ahm/maps/log_map_solver.hpp"
 #include "experiments/comparison.hpp"
 #include "timing.hpp"
@@ -54,11 +53,8 @@ Table runtime(const Settings& settings) {
   if (!settings.toy) sizes.insert(sizes.end(), {10000, 40000, 160000});
   for (int number : {0, 1})
     for (Index n : sizes) measure(number == 0 ? "sphere" : "torus", generated(number, n), settings.threads, table);
-  for (const NamedMesh& mesh : user_meshes(settings)) try {
-      measure(mesh.name, mesh, settings.threads, table);
-    } catch (const Error& e) {
-      fmt::print(stderr, "left out: {}: {}\n", mesh.name, e.what());
-    }
+  for (const NamedMesh& mesh : user_meshes(settings))
+    run_or_leave_out(mesh.name, [&] { measure(mesh.name, mesh, settings.threads, table); });
   auto ratio = [&](const char* a, const char* b) {
     std::vector<double> x = table.numbers(a), y = table.numbers(b);
     for (std::size_t i = 0; i < x.size(); ++i) x[i] /= y[i];

@@ -53,25 +53,32 @@ bool only_triangles(const io::Geometry& file) {
 
 }  // namespace
 
+void run_or_leave_out(const std::string& name, const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const Error& e) {
+    fmt::print(stderr, "left out: {}: {}\n", name, e.what());
+  }
+}
+
 UserSurfaces user_surfaces(const Settings& settings, Index largest) {
   UserSurfaces found;
-  for (const auto& [path, name, type] : mesh_files(settings)) try {
-      const io::Geometry file = io::read(path);
-      if (file.face_count() == 0) throw InvalidGeometry("has no faces");
-      if (static_cast<Index>(file.points.size()) > largest) continue;
-      if (only_triangles(file)) {
-        NamedMesh& mesh = found.triangles.emplace_back(NamedMesh{{file.points, {}, {}}, name});
-        for (std::size_t f = 0; f < file.face_count(); ++f)
-          mesh.faces.push_back({file.face(f)[0], file.face(f)[1], file.face(f)[2]});
-      } else {
-        NamedPolygons& mesh = found.polygons.emplace_back();
-        mesh.positions = file.points;
-        mesh.name = name;
-        for (std::size_t f = 0; f < file.face_count(); ++f) mesh.add({file.face(f).begin(), file.face(f).end()});
-      }
-    } catch (const Error& e) {
-      fmt::print(stderr, "left out: {}: {}\n", path.string(), e.what());
+  const auto add = [&](const MeshFile& input) {
+    const io::Geometry file = io::read(input.path);
+    if (file.face_count() == 0) throw InvalidGeometry("has no faces");
+    if (static_cast<Index>(file.points.size()) > largest) return;
+    if (only_triangles(file)) {
+      NamedMesh& mesh = found.triangles.emplace_back(NamedMesh{{file.points, {}, {}}, input.name});
+      for (std::size_t f = 0; f < file.face_count(); ++f)
+        mesh.faces.push_back({file.face(f)[0], file.face(f)[1], file.face(f)[2]});
+    } else {
+      NamedPolygons& mesh = found.polygons.emplace_back();
+      mesh.positions = file.points;
+      mesh.name = input.name;
+      for (std::size_t f = 0; f < file.face_count(); ++f) mesh.add({file.face(f).begin(), file.face(f).end()});
     }
+  };
+  for (const MeshFile& file : mesh_files(settings)) run_or_leave_out(file.path.string(), [&] { add(file); });
   return found;
 }
 

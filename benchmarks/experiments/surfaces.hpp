@@ -6,6 +6,7 @@
 /// \endcode
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,9 @@ struct NamedMesh : Mesh {
 struct NamedPolygons : test::Polygons {
   std::string name;
 };
+
+/// Runs `work`. If it throws an `Error`, reports `name` on the error stream as left out.
+void run_or_leave_out(const std::string& name, const std::function<void()>& work);
 
 /// Triangle meshes and meshes of other polygons.
 struct UserSurfaces {

@@ -7,7 +7,6 @@
 
 #include "ahm/applications/tool_path.hpp"
 #include "ahm/conformance/parts.hpp"
-#include "ahm/error.hpp"
 #include "ahm/io/read.hpp"
 #include "ahm/pointcloud/point_cloud_surface.hpp"
 #include "ahm/polymesh/polygon_mesh_surface.hpp"
@@ -51,11 +50,7 @@ SurfacePtr triangles(const std::vector<Vec3>& positions, const std::vector<Trian
 /// Measures a part; reports and leaves out one that cannot be covered.
 void try_part(const std::string& name, const std::function<SurfacePtr()>& build, const Settings& settings,
               Table& table) {
-  try {
-    measure(name, build(), settings, table);
-  } catch (const Error& e) {
-    fmt::print(stderr, "left out: {}: {}\n", name, e.what());
-  }
+  run_or_leave_out(name, [&] { measure(name, build(), settings, table); });
 }
 
 void measure_user_parts(const Settings& settings, Table& table) {

@@ -229,16 +229,9 @@ Table trust(const Settings& settings) {
   measure(NamedPolygons{test::cube_sphere(static_cast<Index>(std::sqrt(n / 6.0))), "sphere of quads"}, table);
   measure(NamedPolygons{test::voronoi_sphere(n / 2), "sphere of Voronoi cells"}, table);
   const UserSurfaces user = user_surfaces(settings, largest_mesh);
-  const auto try_measure = [](const std::string& name, const auto& run) {
-    try {
-      run();
-    } catch (const Error& e) {
-      fmt::print(stderr, "left out: {}: {}\n", name, e.what());
-    }
-  };
   for (const NamedMesh& mesh : user.triangles)
-    try_measure(mesh.name, [&] { measure(Surface(mesh.name, mesh), table); });
-  for (const NamedPolygons& mesh : user.polygons) try_measure(mesh.name, [&] { measure(mesh, table); });
+    run_or_leave_out(mesh.name, [&] { measure(Surface(mesh.name, mesh), table); });
+  for (const NamedPolygons& mesh : user.polygons) run_or_leave_out(mesh.name, [&] { measure(mesh, table); });
   table.seen = vector_error_summary(table);
   return table;
 }

@@ -15,6 +15,7 @@
 #include "experiments/comparison.hpp"
 #include "scaling/sizes.hpp"
 #include "shapes.hpp"
+#include "speed.hpp"
 #include "timing.hpp"
 
 namespace ahm::bench {
@@ -32,13 +33,6 @@ std::unique_ptr<const ahm::Surface> build(bool is_mesh, Index n, unsigned thread
   const Mesh mesh = jittered_icosphere(n, 0.15);
   return std::make_unique<const trimesh::TriangleMeshSurface>(
       trimesh::TriangleMeshSurface::build(mesh.positions, mesh.faces, {.threads = threads}));
-}
-
-/// Bytes per second at which one thread copies a large array, read and written bytes together.
-double bandwidth() {
-  std::vector<double> from(std::size_t{1} << 25, 1), to(from.size());
-  const double time = min_seconds([&] { std::copy(from.begin(), from.end(), to.begin()); });
-  return 2 * sizeof(double) * static_cast<double>(from.size()) / time;
 }
 
 /// Bytes that an additional map reads and writes at least: neighbors, logarithms and transports of the graph, and the columns of the map.
@@ -76,8 +70,8 @@ std::vector<double> measure(bool is_mesh, Index n, const MethodOfScaling& method
   const bool is_batched = method.has_vectors && additional < longest_in_batch;
   const double together =
       is_batched ? seconds([&] { solver->log_maps(sources); }) / batch : std::numeric_limits<double>::quiet_NaN();
-  const double least = least_bytes(surface->graph(), method.has_vectors) / bandwidth();
-  return {static_cast<double>(surface->graph().size()), surface_time, first, additional, together, least, peak};
+  return {static_cast<double>(surface->graph().size()),      surface_time, first, additional, together,
+          least_bytes(surface->graph(), method.has_vectors), peak};
 }
 
 }  // namespace
@@ -86,6 +80,7 @@ Table method_scaling(const Settings& settings) {
   Table table({"surface", "vertices", "method", "surface s", "first map s", "additional map s", "batch of 16, s each",
                "reading s", "added MB"});
   const unsigned threads = settings.threads;
+  const double bandwidth = in_own_process(1, [] { return std::vector{copy_bandwidth()}; })[0];
   const MethodOfScaling methods[] = {
       {"distance", PolarSolverOptions{.threads = threads}, false},
       {"polar", PolarSolverOptions{.threads = threads}},
@@ -99,7 +94,8 @@ Table method_scaling(const Settings& settings) {
       for (const MethodOfScaling& method : methods) {
         const bool is_exact = std::holds_alternative<ExactSolverOptions>(method.options);
         if (is_exact && (!is_mesh || n > largest_exact)) continue;
-        const auto numbers = in_own_process(7, [&] { return measure(is_mesh, n, method, threads); });
+        auto numbers = in_own_process(7, [&] { return measure(is_mesh, n, method, threads); });
+        numbers[5] /= bandwidth;
         std::vector<Cell> row{is_mesh ? "mesh" : "points", static_cast<Index>(numbers[0]), method.name};
         for (std::size_t k = 1; k < numbers.size(); ++k) row.push_back(known(numbers[k]));
         table.add(row);

@@ -32,17 +32,20 @@ constexpr double missed = 1e-9, missed_between = 1e-3;
 /// Size of the cache of one-rings. Those ahead of the front are used several times.
 constexpr std::size_t ring_cache_size = 2048;
 
-/// Whether a front with this distance and focusing replaces another one.
-bool comes_before(double distance, double focusing, double other, double other_focusing) {
-  if (!(std::abs(distance - other) <= same_length * other)) return distance < other;
-  const double gain = std::abs(other_focusing) - std::abs(focusing);
-  return std::abs(gain) > same_focusing * std::abs(other_focusing) ? gain > 0 : distance < other * (1 - least_gain);
-}
+/// How the front arrives at a vertex.
+struct Arrival {
+  double distance, focusing;
+  bool follows_edge;
+};
 
-/// Whether a path that is not noticeably longer replaces one along an edge. If the front crosses the edge at a tiny angle, the detour
-/// along it is below `least_gain`, but the direction is wrong by the square root of that.
-bool straightens(double distance, bool follows_edge, double other, bool other_follows_edge) {
-  return !follows_edge && other_follows_edge && distance <= other * (1 + least_gain);
+/// Whether an arrival replaces another one. Where the front crosses an edge at a tiny angle, the detour along the edge is below `least_gain`,
+/// but the direction is wrong by the square root of that: there the path across triangles is chosen.
+bool comes_before(const Arrival& one, const Arrival& other) {
+  if (!one.follows_edge && other.follows_edge && one.distance <= other.distance * (1 + least_gain)) return true;
+  if (!(std::abs(one.distance - other.distance) <= same_length * other.distance)) return one.distance < other.distance;
+  const double gain = std::abs(other.focusing) - std::abs(one.focusing);
+  return std::abs(gain) > same_focusing * std::abs(other.focusing) ? gain > 0
+                                                                   : one.distance < other.distance * (1 - least_gain);
 }
 
 }  // namespace
@@ -137,11 +140,10 @@ void Wavefront::Impl::offer(Index vertex, Index point, double distance, double s
   Index own;
   bool is_added = false;
   if (const Entry* known = find(vertex, point)) {
-    if (!comes_before(distance, focusing, known->distance, known->focusing) &&
-        !(directions_ &&
-          straightens(distance, path.follows_edge(), known->distance, paths_[number(*known)].follows_edge())))
+    const bool follows_edge = directions_ && paths_[number(*known)].follows_edge();
+    if (!comes_before({distance, focusing, path.follows_edge()}, {known->distance, known->focusing, follows_edge}) ||
+        known->gains == most_gains)
       return;
-    if (known->gains == most_gains) return;
     distance = std::min(distance, known->distance);
     own = number(*known);
   } else {
@@ -267,9 +269,7 @@ void Wavefront::Impl::spread(Index from, Index point, double distance) {
         crossing = bent_crossing(across.share, bend, base_length, length - to_side);
         length = bent;
       }
-      if (!comes_before(length, bent_by, found.distance, found.focusing) &&
-          !(directions_ && straightens(length, false, found.distance, found.path.follows_edge())))
-        return;
+      if (!comes_before({length, bent_by, false}, {found.distance, found.focusing, found.path.follows_edge()})) return;
       found.distance = std::min(length, found.distance);
       found.focusing = bent_by;
       found.is_new = true;

@@ -35,8 +35,8 @@ struct Wavefront::Impl {
   struct Path {
     Vec2 direction;  ///< direction at the point, in the frame of the source
     Vec2 arrival{};  ///< direction at the vertex, in its frame; {0, 0}: from `last`; NaN: unknown
-    std::array<Index, 2> last{
-        -1, -1};            ///< ends of the side that the path crosses last; equal: it follows an edge; -1: none
+    /// Ends of the side that the path crosses last. Equal: it follows an edge. One of them -1: it is an edge from the source.
+    std::array<Index, 2> last{-1, -1};
     float share = 0;        ///< where the path crosses that side: 0 at the first end, 1 at the second
     float variance = 0;     ///< sum of squared differences of the direction estimates (`direction_error`)
     float widening = 0;     ///< ln(J / d): `widening_between`
