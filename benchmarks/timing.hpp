@@ -19,16 +19,22 @@
 
 namespace ahm::bench {
 
-/// Shortest wall-clock time of five runs, or of as many as fit into five seconds. Other work of the machine only adds time.
-template <class Work>
-double min_seconds(const Work& work) {
+/// The least of up to five times, s. @param measure  runs once and returns its seconds
+template <class Measure>
+double least_seconds(const Measure& measure) {
   double least = std::numeric_limits<double>::infinity(), sum = 0;
   for (int run = 0; run < 5 && sum < 5; ++run) {
-    const double time = seconds(work);
+    const double time = measure();
     least = std::min(least, time);
     sum += time;
   }
   return least;
+}
+
+/// Shortest wall-clock time of five runs, or of as many as fit into five seconds. Other work of the machine only adds time.
+template <class Work>
+double min_seconds(const Work& work) {
+  return least_seconds([&] { return seconds(work); });
 }
 
 /// Largest memory that the work adds, MB, measured in a process of its own. NaN where there can be no process or the work

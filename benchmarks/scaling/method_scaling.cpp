@@ -44,8 +44,7 @@ double least_bytes(const TangentGraph& graph, bool has_vectors) {
 
 struct MethodOfScaling {
   const char* name;
-  MethodOptions options;
-  bool has_vectors = true;
+  std::optional<MethodOptions> options;  ///< none: distances alone, which need no solver
 };
 
 std::vector<double> measure(bool is_mesh, Index n, const MethodOfScaling& method, unsigned threads) {
@@ -54,24 +53,24 @@ std::vector<double> measure(bool is_mesh, Index n, const MethodOfScaling& method
   const double surface_time = seconds([&] { surface = build(is_mesh, n, threads); });
   std::optional<SurfaceSolver> solver;
   const auto solve = [&](Row source) {
-    if (method.has_vectors)
+    if (solver)
       solver->log_map(source);
     else
-      solver->distance(source);
+      distance(*surface, {source});
   };
   const double first = seconds([&] {
-    solver.emplace(*surface, method.options);
+    if (method.options) solver.emplace(*surface, *method.options);
     solve(Row(n / 3));
   });
   const double peak = peak_megabytes() - start;
   const double additional = min_seconds([&] { solve(Row(n / 2)); });
   std::vector<Location> sources;
   for (Index k = 0; k < batch; ++k) sources.emplace_back(Row(k * (n / batch)));
-  const bool is_batched = method.has_vectors && additional < longest_in_batch;
+  const bool is_batched = solver && additional < longest_in_batch;
   const double together =
       is_batched ? seconds([&] { solver->log_maps(sources); }) / batch : std::numeric_limits<double>::quiet_NaN();
   return {static_cast<double>(surface->graph().size()),      surface_time, first, additional, together,
-          least_bytes(surface->graph(), method.has_vectors), peak};
+          least_bytes(surface->graph(), solver.has_value()), peak};
 }
 
 }  // namespace
@@ -82,7 +81,7 @@ Table method_scaling(const Settings& settings) {
   const unsigned threads = settings.threads;
   const double bandwidth = in_own_process(1, [] { return std::vector{copy_bandwidth()}; })[0];
   const MethodOfScaling methods[] = {
-      {"distance", PolarSolverOptions{.threads = threads}, false},
+      {"distance", {}},
       {"polar", PolarSolverOptions{.threads = threads}},
       {"heat", HeatOptions{.strategy = Strategy::global, .threads = threads}},
       {"heat localized", HeatOptions{.variant = Variant::localized, .strategy = Strategy::global, .threads = threads}},
@@ -92,7 +91,7 @@ Table method_scaling(const Settings& settings) {
          sizes(settings, 640,
                is_mesh ? std::vector<Index>{2562, 40962, 163842, 655362} : std::vector<Index>{100'000, 1'000'000}))
       for (const MethodOfScaling& method : methods) {
-        const bool is_exact = std::holds_alternative<ExactSolverOptions>(method.options);
+        const bool is_exact = method.options && std::holds_alternative<ExactSolverOptions>(*method.options);
         if (is_exact && (!is_mesh || n > largest_exact)) continue;
         auto numbers = in_own_process(7, [&] { return measure(is_mesh, n, method, threads); });
         numbers[5] /= bandwidth;

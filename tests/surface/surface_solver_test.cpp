@@ -247,7 +247,9 @@ TEST(SurfaceSolver, DistancesAreThoseToTheNearestSource) {
       EXPECT_NEAR(two[i], std::min(first, second), 1e-12);
       EXPECT_EQ(std::isnan(within[i]), first > 1.5) << i;
     }
+    if (solver.method() != Method::exact) EXPECT_EQ(distance(solver.surface(), {0, 3}), two);
   }
+  EXPECT_THROW(distance(SurfaceSolver(sheet()).surface(), {Location(12)}), InvalidArgument);
 }
 
 TEST(SurfaceSolver, PathsRunOnFacesAndTangentPlanes) {

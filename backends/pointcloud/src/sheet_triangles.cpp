@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "ahm/surface/detail/gluing.hpp"
+#include "ahm/util/parallel.hpp"
 #include "ahm/util/small_math.hpp"
 #include "ahm/util/vec.hpp"
 
@@ -335,7 +336,7 @@ exact::PolyhedralSurface surface_of(const detail::GluedMesh& mesh, std::span<con
   edges.tail = tails;
   std::vector<Half> corners(frames.size(), -1);
   for (Index v = 0; v < mesh.vertex_count(); ++v) corners[vertices[v]] = mesh.corners()[v];
-  return {edges, [&](Index f) { return lay_out(tails, frames, f); }, corners};
+  return {edges, [&](Index f) { return lay_out(tails, frames, f); }, corners, 0};
 }
 
 /// Finds the angle of direction 0 in the frame of a vertex: the mean, over its edges, of the difference between their angles in
@@ -375,7 +376,7 @@ FlatTriangles flat_sheet(std::span<const Frame> frames, std::span<const Triangle
   for (const Frame& frame : frames) flat.positions.push_back(length_unit * frame.origin);
   flat.angles.assign(frames.size(), 0);
   flat.mirrored.assign(frames.size(), 0);
-  for (Index v = 0; v < static_cast<Index>(frames.size()); ++v) fit_direction(flat, frames, v);
+  detail::for_each_index(frames.size(), 0, [&](std::size_t v) { fit_direction(flat, frames, static_cast<Index>(v)); });
   return flat;
 }
 

@@ -170,22 +170,12 @@ std::vector<double> SurfaceSolver::distance(const Location& source, const Surfac
 
 std::vector<double> SurfaceSolver::distance(const std::vector<Location>& sources,
                                             const SurfaceDistanceOptions& options) const {
+  if (impl_->method != Method::exact) return ahm::distance(surface(), sources, options);
   check_radius(options.radius);
-  if (impl_->method == Method::exact) {
-    std::vector<ExactSource> from;
-    for (const Location& source : sources) from.push_back({.point = source.on(surface())});
-    const LogMap map = impl_->geodesics().log_map(from, {.radius = options.radius, .progress = options.progress}).map;
-    return by_row(surface().rows(), [&](Vertex v) { return map.distance(v); });
-  }
-  const TangentGraph& graph = surface().graph();
-  Wavefront front(graph, Wavefront::one_rings_within(graph, options.radius, 0));
-  for (const Location& source : sources) front.add(surface().source(source.on(surface())).source);
-  options.progress.step("distance", 0);
-  front.run(options.radius, options.progress.stop);
-  return by_row(surface().rows(), [&](Vertex v) {
-    const double found = front.distance(v);
-    return std::isfinite(found) && found <= options.radius ? found : NAN;
-  });
+  std::vector<ExactSource> from;
+  for (const Location& source : sources) from.push_back({.point = source.on(surface())});
+  const LogMap map = impl_->geodesics().log_map(from, {.radius = options.radius, .progress = options.progress}).map;
+  return by_row(surface().rows(), [&](Vertex v) { return map.distance(v); });
 }
 
 SurfacePath SurfaceSolver::path(const Location& start, const Location& end) const {
@@ -221,6 +211,20 @@ RowLocalMaps SurfaceSolver::local_maps(const std::vector<Location>& sources, con
   for (const Location& source : sources) from.push_back(source.on(surface()));
   return impl_->polar && own.method == Method::polar ? row_local_maps(*impl_->polar, from, own)
                                                      : row_local_maps(surface(), from, own);
+}
+
+std::vector<double> distance(const Surface& surface, const std::vector<Location>& sources,
+                             const SurfaceDistanceOptions& options) {
+  check_radius(options.radius);
+  const TangentGraph& graph = surface.graph();
+  Wavefront front(graph, Wavefront::one_rings_within(graph, options.radius, 0));
+  for (const Location& source : sources) front.add(surface.source(source.on(surface)).source);
+  options.progress.step("distance", 0);
+  front.run(options.radius, options.progress.stop);
+  return by_row(surface.rows(), [&](Vertex v) {
+    const double found = front.distance(v);
+    return std::isfinite(found) && found <= options.radius ? found : NAN;
+  });
 }
 
 SurfaceLogMap log_map(const Surface& surface, const Location& source, const SurfaceMapOptions& options,

@@ -162,6 +162,11 @@ class SurfaceSolver {
   std::unique_ptr<const Impl> impl_;
 };
 
+/// `SurfaceSolver::distance` by a wavefront, without a solver. The one-rings are built by the first call and kept with the graph.
+/// @throws InvalidArgument (as `Surface::source`; radius), ResourceExhausted, Cancelled
+std::vector<double> distance(const Surface& surface, const std::vector<Location>& sources,
+                             const SurfaceDistanceOptions& options = {});
+
 /// One log map. For several sources make a `SurfaceSolver`. @throws as `SurfaceSolver`
 SurfaceLogMap log_map(const Surface& surface, const Location& source, const SurfaceMapOptions& options = {},
                       const MethodOptions& method = AutomaticOptions{.expected_maps = 1});
