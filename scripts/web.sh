@@ -7,8 +7,12 @@ cd "$(dirname "$0")/.."
 
 command -v npm >/dev/null || { echo "error: npm was not found; install Node 20 or later (Debian 12: nodejs and npm have version 18)" >&2; exit 1; }
 scripts/install_packages.sh web
-mkdir -p build/web/include
-cp /usr/include/nanoflann.hpp build/web/include/  # the compiler does not search the folder of the system's headers
+# The compiler does not search the folder of the system's headers. Debian's libc++ for WebAssembly is configured without std::filesystem,
+# but has its headers: web/src/filesystem.cpp defines the functions that libahm uses.
+headers=build/web/include
+mkdir -p "$headers"
+cp -r /usr/include/nanoflann.hpp /usr/include/nlohmann /usr/include/fmt /usr/include/stb "$headers"
+sed '/define _LIBCPP_HAS_NO_FILESYSTEM/d' /usr/lib/llvm-19/include/wasm32-wasi/c++/v1/__config_site >"$headers/__config_site"
 
 # Debian's libc++ for WebAssembly has no exceptions. Those of emscripten's package have the same ABI; its other parts are not used.
 runtime=build/web/emscripten
@@ -26,9 +30,11 @@ fi
 
 echo "Building (build/web) ..."
 cmake -S . -B build/web -G Ninja -DCMAKE_TOOLCHAIN_FILE=cmake/wasm32-wasi.cmake -DCMAKE_BUILD_TYPE=Release -DAHM_UNITY_BUILD=ON \
-  -DAHM_WITH_BLAS=OFF -DAHM_WITH_THREADS=OFF -DAHM_WITH_FLANN=OFF -DAHM_WITH_PCL=OFF -DAHM_BUILD_APPS=OFF \
+  -DAHM_WITH_BLAS=OFF -DAHM_WITH_FILES=OFF -DAHM_WITH_FLANN=OFF -DAHM_WITH_MINIZIP=OFF -DAHM_WITH_PCL=OFF -DAHM_WITH_PUGIXML=OFF \
+  -DAHM_WITH_THREADS=OFF -DAHM_WITH_THREE=OFF -DAHM_WITH_VIEWER=OFF -DAHM_WITH_ZLIB=OFF -DAHM_BUILD_APPS=OFF \
   -DAHM_BUILD_PYTHON=OFF -DAHM_BUILD_EXAMPLES=OFF -DAHM_BUILD_TESTS=OFF -DAHM_INSTALL=OFF \
-  -DCMAKE_CXX_STANDARD_INCLUDE_DIRECTORIES="$PWD/build/web/include" \
+  -DCMAKE_CXX_STANDARD_INCLUDE_DIRECTORIES="$PWD/$headers" \
+  -DSTB_INCLUDE_DIR="$PWD/$headers/stb" \
   -DAHM_WASM_EXCEPTIONS="$PWD/$runtime/libc++abi-except.a;$PWD/$runtime/libunwind-except.a" >/dev/null
 cmake --build build/web --target ahm_web
 

@@ -213,6 +213,3 @@ int ahm_trace(const ahm::SurfaceSolver* solver, const double* place, double x, d
   return guarded([&] { return keep(solver->trace(read_places(place, 1).front(), {x, y, z}, length)); });
 }
 // NOLINTEND(readability-identifier-naming)
-
-// Called for objects with thread storage. They live as long as the module, which has one thread.
-extern "C" int __cxa_thread_atexit(void (*)(void*), void*, void*) noexcept { return 0; }

@@ -12,7 +12,7 @@
 #include <thread>
 #include <utility>
 
-#include "session.hpp"
+#include "workers.hpp"
 #include "token.hpp"
 
 namespace ahm::viewer {
