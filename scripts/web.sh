@@ -36,7 +36,15 @@ cmake -S . -B build/web -G Ninja -DCMAKE_TOOLCHAIN_FILE=cmake/wasm32-wasi.cmake 
   -DCMAKE_CXX_STANDARD_INCLUDE_DIRECTORIES="$PWD/$headers" \
   -DSTB_INCLUDE_DIR="$PWD/$headers/stb" \
   -DAHM_WASM_EXCEPTIONS="$PWD/$runtime/libc++abi-except.a;$PWD/$runtime/libunwind-except.a" >/dev/null
-cmake --build build/web --target ahm_web
+cmake --build build/web --target ahm_web ahm_web_viewer
+
+site=build/web/site
+rm -rf "$site"
+cp -r web/site "$site"
+cp build/web/ahm.wasm web/package/wasi.js LICENSE "$site"
+# The page of ahm view, with the transport of the site.
+node web/page.mjs libahm/render/src web/site/transport.js >"$site/view.html"
+rm "$site/transport.js"
 
 rm -rf build/web/package
 cp -r web/package build/web/package

@@ -156,7 +156,7 @@ Ahm.Viewer = class {
   key(event) {
     if (event.ctrlKey || event.metaKey || event.altKey || /INPUT|SELECT|TEXTAREA/.test(event.target.tagName)) return;
     const step = 0.09, keys = {
-      Escape: () => this.server && this.busy && this.server.cancel(),
+      Escape: () => this.cancel(),
       r: () => this.stage.reset(), f: () => this.panel.next_field(), d: () => this.panel.set_dark(!this.stage.is_dark),
       ArrowLeft: () => this.stage.turn(-step, 0), ArrowRight: () => this.stage.turn(step, 0),
       ArrowUp: () => this.stage.turn(0, step), ArrowDown: () => this.stage.turn(0, -step),
@@ -167,6 +167,12 @@ Ahm.Viewer = class {
     if (event.key.startsWith("Arrow") && event.target !== document.body && event.target !== this.element("stage")) return;
     event.preventDefault();
     act();
+  }
+
+  cancel() {
+    if (!this.busy || !this.server) return;
+    this.server.cancel();
+    this.panel.say("cancelled");
   }
 
   // The following methods require the session.
@@ -192,8 +198,8 @@ Ahm.Viewer = class {
     try {
       await work();
     } catch (error) {
-      if (error.name === "AbortError") this.panel.say("cancelled");
-      else if (error.status !== 409) this.panel.say(error.message, true);  // 409: a newer request replaced it
+      // 409: a newer request replaced it. AbortError: `cancel` ended it.
+      if (error.status !== 409 && error.name !== "AbortError") this.panel.say(error.message, true);
     } finally {
       this.busy--;
     }
@@ -355,6 +361,7 @@ Ahm.Viewer = class {
   async begin_live() {
     const info = await (await this.server.get("info")).json(), element = this.element;
     element("about").textContent = info.about;
+    document.title = element("heading").textContent = this.stage.surface.title;
     const options = (id, words, usual) => {
       for (const word of words) element(id).add(new Option(word, word, word === usual, word === usual));
     };
