@@ -1,7 +1,9 @@
 #!/usr/bin/env bash
-# Builds the npm package in build/web/package: libahm as WebAssembly, with types. Then runs its tests in Node, on the packed package.
+# Builds two folders, and runs their tests in Node and Chromium:
+#   build/web/package  the npm package: libahm as WebAssembly, with types. The tests use the packed package
+#   build/web/site     the viewer without a server: static files for any web server
 # If build/release/bin/ahm exists, the tests compare the maps with its maps.
-#   web.sh
+#   web.sh [--serve]    --serve: then serves the site to this machine, until Ctrl-C
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -33,8 +35,7 @@ cmake -S . -B build/web -G Ninja -DCMAKE_TOOLCHAIN_FILE=cmake/wasm32-wasi.cmake 
   -DAHM_WITH_BLAS=OFF -DAHM_WITH_FILES=OFF -DAHM_WITH_FLANN=OFF -DAHM_WITH_MINIZIP=OFF -DAHM_WITH_PCL=OFF -DAHM_WITH_PUGIXML=OFF \
   -DAHM_WITH_THREADS=OFF -DAHM_WITH_THREE=OFF -DAHM_WITH_VIEWER=OFF -DAHM_WITH_ZLIB=OFF -DAHM_BUILD_APPS=OFF \
   -DAHM_BUILD_PYTHON=OFF -DAHM_BUILD_EXAMPLES=OFF -DAHM_BUILD_TESTS=OFF -DAHM_INSTALL=OFF \
-  -DCMAKE_CXX_STANDARD_INCLUDE_DIRECTORIES="$PWD/$headers" \
-  -DSTB_INCLUDE_DIR="$PWD/$headers/stb" \
+  -DCMAKE_CXX_STANDARD_INCLUDE_DIRECTORIES="$PWD/$headers" -DSTB_INCLUDE_DIR="$PWD/$headers/stb" \
   -DAHM_WASM_EXCEPTIONS="$PWD/$runtime/libc++abi-except.a;$PWD/$runtime/libunwind-except.a" >/dev/null
 cmake --build build/web --target ahm_web ahm_web_viewer
 
@@ -46,17 +47,27 @@ cp build/web/ahm.wasm web/package/wasi.js LICENSE "$site"
 node web/page.mjs libahm/render/src web/site/transport.js >"$site/view.html"
 rm "$site/transport.js"
 
+program="$PWD/build/release/bin/ahm"
+[ -x "$program" ] || program=""
+program="${AHM_PROGRAM:-$program}"
+echo "Testing the site ..."
+AHM_SITE="$PWD/$site" node --test web/test/
+/usr/bin/python3 web/test/site_test.py --site "$site" --work build/web/browser ${program:+--ahm "$program"}
+
 rm -rf build/web/package
 cp -r web/package build/web/package
 cp build/web/libahm.wasm LICENSE build/web/package/
-echo "Packing and testing ..."
+echo "Packing and testing the package ..."
 rm -rf build/web/installed && mkdir build/web/installed
 (cd build/web/package && npm pack --silent --pack-destination ..)
 (cd build/web/installed && npm init -y >/dev/null && npm install --silent --no-audit --no-fund --offline ../libahm-*.tgz)
 cp web/package/test/*.mjs build/web/installed/
 sed -n '/^```js$/,/^```$/p' web/package/README.md | grep -v '^```' >build/web/installed/readme.mjs
 (cd build/web/installed && node readme.mjs)
-program="$PWD/build/release/bin/ahm"
-[ -x "$program" ] || program=""
-(cd build/web/installed && AHM_PROGRAM="${AHM_PROGRAM:-$program}" node --test)
+(cd build/web/installed && AHM_PROGRAM="$program" node --test)
 ls -l build/web/libahm-*.tgz
+echo "site: $(tar cz -C "$site" . | wc -c) bytes, compressed"
+if [ "${1:-}" = --serve ]; then
+  echo "http://127.0.0.1:8000/"
+  exec python3 -m http.server --bind 127.0.0.1 --directory "$site" 8000
+fi

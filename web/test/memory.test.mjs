@@ -1,15 +1,15 @@
-// The session of the site at the end of its memory. `node --test` runs this in the folder of the site.
+// The session of the site at the end of its memory. AHM_SITE in the environment is its folder.
 import assert from 'node:assert/strict';
 import {readFileSync} from 'node:fs';
 import {test} from 'node:test';
 
-import {wasi} from './wasi.js';
+import {wasi} from '../package/wasi.js';
 
 const most = 65536;  // pages of 64 KiB
 const encoder = new TextEncoder(), decoder = new TextDecoder();
 
 function session() {
-  const compiled = new WebAssembly.Module(readFileSync(new URL('ahm.wasm', import.meta.url)));
+  const compiled = new WebAssembly.Module(readFileSync(`${process.env.AHM_SITE}/ahm.wasm`));
   const imports = wasi(compiled, () => exports.memory);
   imports.ahm = {progress() {}};
   const {exports} = new WebAssembly.Instance(compiled, imports);

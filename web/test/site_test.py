@@ -35,7 +35,7 @@ class Browser:
     """Chromium, and a server of the site's static files."""
 
     def __init__(self):
-        self.work = pathlib.Path(options.work)
+        self.work = pathlib.Path(options.work).resolve()
         shutil.rmtree(self.work, ignore_errors=True)
         self.work.mkdir(parents=True)
         self.server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Handler, directory=options.site))
