@@ -1,30 +1,46 @@
 // Opens files in a worker, and shows the page of `ahm view` for them. `window.ahm` is the transport of that page.
 
 const element = (id) => document.getElementById(id);
+const cancelled = () => new DOMException('cancelled', 'AbortError');
 const wasm = WebAssembly.compileStreaming(fetch('ahm.wasm'));
 
 /** Requests to a session in a worker, one after the other. `fetch` has the arguments and the result of window.fetch. */
 class WorkerTransport {
   constructor() {
     this.waiting = [];  // {name, body, resolve, reject}; the first one is running
-    this.count = 0;
   }
 
   /** Starts a session for files. @return the answer to the request "open" */
-  async open(files) {
+  open(files) {
     this.files = files;
     this.end();
-    const worker = this.worker = new Worker('worker.js', {type: 'module'});
-    worker.postMessage({wasm: await wasm});
-    worker.onmessage = ({data}) => this.receive(data);
-    worker.onerror = (event) => this.end(new Error(event.message || 'the worker of this page cannot start'));
-    for (const file of files) await this.fetch('file', {body: await contents(file)});
-    return this.fetch('open', {body: nameOf(files[0])});
+    this.ready = this.start(files);
+    this.ready.catch(() => {});  // the requests that wait for it report the failure
+    return this.ready;
   }
 
-  fetch(name, {body, signal} = {}) {
+  async start(files) {
+    const worker = this.worker = new Worker('worker.js', {type: 'module'});
+    worker.onmessage = ({data}) => this.receive(data);
+    worker.onerror = (event) => this.end(new Error(event.message || 'the worker of this page cannot start'));
+    worker.postMessage({wasm: await wasm});
+    for (const file of files) {
+      const body = await contents(file);
+      if (worker !== this.worker) throw cancelled();
+      await this.request('file', {body});
+    }
+    return this.request('open', {body: nameOf(files[0])});
+  }
+
+  async fetch(name, options) {
+    await this.ready;
+    return this.request(name, options);
+  }
+
+  request(name, {body, signal} = {}) {
     return new Promise((resolve, reject) => {
-      const request = {id: ++this.count, name, body, resolve, reject};
+      const request = {name, body, resolve, reject};
+      if (signal?.aborted) return this.abort(request);
       signal?.addEventListener('abort', () => this.abort(request));
       this.waiting.push(request);
       if (this.waiting.length === 1) this.send();
@@ -33,10 +49,10 @@ class WorkerTransport {
 
   send() {
     const [request] = this.waiting;
-    if (request) this.worker.postMessage({id: request.id, name: request.name, body: request.body});
+    if (request) this.worker.postMessage({name: request.name, body: request.body});
   }
 
-  receive({id, stage, fraction, status, type, body, failed}) {
+  receive({stage, fraction, status, type, body, failed}) {
     if (stage) return this.progress?.(stage, fraction);
     const request = this.waiting.shift();
     request.resolve(new Response(body, {status, headers: {'Content-Type': type}}));
@@ -47,7 +63,7 @@ class WorkerTransport {
 
   /** Rejects a request. A running one goes on, because a worker cannot be interrupted; the next one waits for it. */
   abort(request) {
-    request.reject(new DOMException('cancelled', 'AbortError'));
+    request.reject(cancelled());
     const at = this.waiting.indexOf(request);
     if (at > 0) this.waiting.splice(at, 1);
   }
@@ -58,7 +74,7 @@ class WorkerTransport {
   }
 
   /** Ends the worker, and rejects its requests. */
-  end(error = new DOMException('cancelled', 'AbortError')) {
+  end(error = cancelled()) {
     this.worker?.terminate();
     for (const request of this.waiting.splice(0)) request.reject(error);
   }

@@ -1,5 +1,6 @@
-// The session of `ahm view` in a worker. Messages to it: {wasm}, then {id, name, body}; body is text, or for the request "file" a
-// [name, bytes]. Messages from it: {id, status, type, body}, or {stage, fraction}. After a message with `failed`, start a new worker.
+// The session of `ahm view` in a worker. Messages to it: {wasm}, then {name, body}; body is text, or for the request "file"
+// [name, bytes]. It answers each with {status, type, body}, in order; before that it may send {stage, fraction}. After an answer with
+// `failed`, start a new worker.
 import {wasi} from './wasi.js';
 
 const most = 65536;  // pages of memory, 4 GB
@@ -53,7 +54,7 @@ function failure(error) {
 }
 
 let started;
-onmessage = async ({data: {wasm, id, name, body}}) => {
+onmessage = async ({data: {wasm, name, body}}) => {
   if (wasm) return void (started = start(wasm));
   await started;
   let result;
@@ -62,5 +63,5 @@ onmessage = async ({data: {wasm, id, name, body}}) => {
   } catch (error) {
     result = failure(error);
   }
-  postMessage({id, ...result}, [result.body]);
+  postMessage(result, [result.body]);
 };
