@@ -13,8 +13,8 @@ scripts/install_packages.sh web
 # but has its headers: web/src/filesystem.cpp defines the functions that libahm uses.
 headers=build/web/include
 mkdir -p "$headers"
-cp -r /usr/include/nanoflann.hpp /usr/include/nlohmann /usr/include/fmt /usr/include/stb "$headers"
-sed '/define _LIBCPP_HAS_NO_FILESYSTEM/d' /usr/lib/llvm-19/include/wasm32-wasi/c++/v1/__config_site >"$headers/__config_site"
+cp -a /usr/include/nanoflann.hpp /usr/include/nlohmann /usr/include/fmt /usr/include/stb "$headers"
+[ -e "$headers/__config_site" ] || sed '/define _LIBCPP_HAS_NO_FILESYSTEM/d' /usr/lib/llvm-19/include/wasm32-wasi/c++/v1/__config_site >"$headers/__config_site"
 
 # Debian's libc++ for WebAssembly has no exceptions. Those of emscripten's package have the same ABI; its other parts are not used.
 runtime=build/web/emscripten
@@ -50,10 +50,6 @@ rm "$site/transport.js"
 program="$PWD/build/release/bin/ahm"
 [ -x "$program" ] || program=""
 program="${AHM_PROGRAM:-$program}"
-echo "Testing the site ..."
-AHM_SITE="$PWD/$site" node --test web/test/
-/usr/bin/python3 web/test/site_test.py --site "$site" --work build/web/browser ${program:+--ahm "$program"}
-
 rm -rf build/web/package
 cp -r web/package build/web/package
 cp build/web/libahm.wasm LICENSE build/web/package/
@@ -65,6 +61,16 @@ cp web/package/test/*.mjs build/web/installed/
 sed -n '/^```js$/,/^```$/p' web/package/README.md | grep -v '^```' >build/web/installed/readme.mjs
 (cd build/web/installed && node readme.mjs)
 (cd build/web/installed && AHM_PROGRAM="$program" node --test)
+
+example=build/web/example
+rm -rf "$example" && mkdir -p "$example/node_modules"
+cp web/examples/decal.html "$example"
+ln -s /usr/share/javascript/three "$example/node_modules/three"
+ln -s "$PWD/build/web/installed/node_modules/libahm" "$example/node_modules/libahm"
+echo "Testing the site and the example ..."
+AHM_SITE="$PWD/$site" node --test web/test/
+/usr/bin/python3 web/test/site_test.py --site "$site" --example "$example" --work build/web/browser ${program:+--ahm "$program"}
+
 ls -l build/web/libahm-*.tgz
 echo "site: $(tar cz -C "$site" . | wc -c) bytes, compressed"
 if [ "${1:-}" = --serve ]; then

@@ -200,6 +200,18 @@ export class Solver {
     );
   }
 
+  localMaps({radius = 0, k = 0, sources = null} = {}) {
+    const {module} = this.#handle;
+    checkIntegers([k], 'k');
+    if (sources !== null && sources.length === 0) throw new InvalidArgument('sources: empty; leave it out for all rows');
+    return module.withArrays([sources && places(sources)], (pointer) =>
+      module.columns(module.exports.ahm_local_maps(this.#handle.get(), pointer, sources?.length ?? 0, radius, k), (column) => {
+        const [u, v, distance, weight, cos, sin] = [2, 3, 4, 5, 6, 7].map(column);
+        return {begin: Int32Array.from(column(0)), row: Int32Array.from(column(1)), u, v, distance, weight, cos, sin};
+      }),
+    );
+  }
+
   free() {
     this.#handle.free();
   }

@@ -6,16 +6,20 @@ Screenshots are left in --work. With --measure, prints times on a mesh of 41,186
 import argparse
 import csv
 import functools
+import gzip
 import http.server
 import io
+import json
 import math
 import pathlib
 import shutil
+import struct
 import subprocess
 import sys
 import threading
 import time
 import unittest
+import zlib
 
 from selenium import webdriver
 from selenium.webdriver.chrome.service import Service
@@ -32,13 +36,12 @@ class Handler(http.server.SimpleHTTPRequestHandler):
 
 
 class Browser:
-    """Chromium, and a server of the site's static files."""
+    """Chromium, and a server of a folder of static files."""
 
-    def __init__(self):
+    def __init__(self, folder=None):
         self.work = pathlib.Path(options.work).resolve()
-        shutil.rmtree(self.work, ignore_errors=True)
-        self.work.mkdir(parents=True)
-        self.server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Handler, directory=options.site))
+        self.work.mkdir(parents=True, exist_ok=True)
+        self.server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Handler, directory=folder or options.site))
         threading.Thread(target=self.server.serve_forever, daemon=True).start()
         self.address = f"http://127.0.0.1:{self.server.server_port}/"
         chrome = webdriver.ChromeOptions()
@@ -158,7 +161,6 @@ class Site(unittest.TestCase):
             z = 1 - (2 * k + 1) / 2000
             rows.append(f"{math.sqrt(1 - z * z) * math.cos(golden * k)} {math.sqrt(1 - z * z) * math.sin(golden * k)} {z}\n")
         cloud.write_text("".join(rows))
-        import gzip
         packed = browser.work / "packed.xyz.gz"
         packed.write_bytes(gzip.compress(cloud.read_bytes()))
         for file, title in ((cloud, "cloud.xyz"), (packed, "packed.xyz")):
@@ -186,6 +188,57 @@ class Site(unittest.TestCase):
         self.assertEqual(browser.js("return document.getElementById('spec').textContent"), "23")
 
 
+class Example(unittest.TestCase):
+    def test_a_click_draws_the_decal_on_the_model(self):
+        if not options.example:
+            self.skipTest("--example is missing")
+        folder = pathlib.Path(options.example)
+        write_glb(folder / "model.glb")
+        write_png(folder / "decal.png")
+        browser = Browser(folder)
+        self.addCleanup(browser.close)
+        driver = browser.driver
+        driver.get(browser.address + "decal.html")
+        browser.wait("document.querySelector('canvas') && performance.getEntriesByName(new URL('decal.png', location).href).length")
+        time.sleep(0.5)
+        before = driver.get_screenshot_as_png()
+        ActionChains(driver).move_to_element_with_offset(driver.find_element(By.TAG_NAME, "canvas"), 60, -40).click().perform()
+        driver.save_screenshot(str(browser.work / "example.png"))
+        self.assertNotEqual(driver.get_screenshot_as_png(), before)
+        self.assertEqual([entry for entry in driver.get_log("browser") if entry["level"] == "SEVERE" and "favicon" not in entry["message"]], [])
+
+
+def write_png(path, size=64):
+    """A blue disc with a yellow cross, on a transparent square."""
+    def pixel(x, y):
+        x, y = x - size / 2 + 0.5, y - size / 2 + 0.5
+        return bytes((0, 0, 0, 0) if math.hypot(x, y) > 0.45 * size else (255, 220, 0, 255) if min(abs(x), abs(y)) < 4 else (0, 40, 200, 255))
+    rows = b"".join(b"\0" + b"".join(pixel(x, y) for x in range(size)) for y in range(size))
+    chunk = lambda name, data: struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
+    path.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">2I5B", size, size, 8, 6, 0, 0, 0)) +
+                     chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
+
+
+def write_glb(path, n=30):
+    """A sphere with positions and normals."""
+    points = [(math.sin(math.pi * i / n) * math.cos(math.pi * j / n), math.cos(math.pi * i / n), math.sin(math.pi * i / n) * math.sin(math.pi * j / n))
+              for i in range(1, n) for j in range(2 * n + 1)]  # the first meridian twice, as at seams of textures
+    at = lambda i, j: i * (2 * n + 1) + j
+    corners = [c for i in range(n - 2) for j in range(2 * n)
+               for c in (at(i, j), at(i, j + 1), at(i + 1, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j))]
+    positions = b"".join(struct.pack("<3f", *p) for p in points)
+    data = positions + struct.pack(f"<{len(corners)}I", *corners)
+    vectors = {"bufferView": 0, "componentType": 5126, "count": len(points), "type": "VEC3", "min": [-1, -1, -1], "max": [1, 1, 1]}
+    text = json.dumps({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+                       "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "NORMAL": 0}, "indices": 1}]}],
+                       "accessors": [vectors, {"bufferView": 1, "componentType": 5125, "count": len(corners), "type": "SCALAR"}],
+                       "bufferViews": [{"buffer": 0, "byteLength": len(positions)}, {"buffer": 0, "byteOffset": len(positions), "byteLength": 4 * len(corners)}],
+                       "buffers": [{"byteLength": len(data)}]}).encode()
+    text += b" " * (-len(text) % 4)
+    path.write_bytes(struct.pack("<3I", 0x46546C67, 2, 28 + len(text) + len(data)) + struct.pack("<I4s", len(text), b"JSON") + text +
+                     struct.pack("<I4s", len(data), b"BIN\0") + data)
+
+
 def measure():
     browser = Browser()
     begin = time.perf_counter()
@@ -203,6 +256,7 @@ if __name__ == "__main__":
     parser = argparse.ArgumentParser()
     parser.add_argument("--ahm", help="the program to compare with")
     parser.add_argument("--site", required=True)
+    parser.add_argument("--example", help="folder of web/examples/decal.html, with its packages")
     parser.add_argument("--work", required=True)
     parser.add_argument("--measure", action="store_true")
     options, rest = parser.parse_known_args()
