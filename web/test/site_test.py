@@ -230,7 +230,8 @@ def write_glb(path, n=30):
     data = positions + struct.pack(f"<{len(corners)}I", *corners)
     vectors = {"bufferView": 0, "componentType": 5126, "count": len(points), "type": "VEC3", "min": [-1, -1, -1], "max": [1, 1, 1]}
     text = json.dumps({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
-                       "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "NORMAL": 0}, "indices": 1}]}],
+                       "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "NORMAL": 0}, "indices": 1, "material": 0}]}],
+                       "materials": [{"pbrMetallicRoughness": {"baseColorFactor": [0.6, 0.6, 0.6, 1], "metallicFactor": 0}}],
                        "accessors": [vectors, {"bufferView": 1, "componentType": 5125, "count": len(corners), "type": "SCALAR"}],
                        "bufferViews": [{"buffer": 0, "byteLength": len(positions)}, {"buffer": 0, "byteOffset": len(positions), "byteLength": 4 * len(corners)}],
                        "buffers": [{"byteLength": len(data)}]}).encode()
