@@ -21,7 +21,7 @@ runtime=build/web/emscripten
 if [ ! -e "$runtime/libunwind-except.a" ]; then
   echo "Downloading the package emscripten (110 MB) for its exception library ..."
   mkdir -p "$runtime/download"
-  (cd "$runtime/download" && apt-get download emscripten)
+  (cd "$runtime/download" && { apt-get download emscripten 2>/dev/null || { apt-get update -qq && apt-get download emscripten; }; })
   for name in libc++abi-except.a libunwind-except.a; do
     dpkg-deb --fsys-tarfile "$runtime"/download/emscripten_*.deb |
       tar -xO "./usr/share/emscripten/cache/sysroot/lib/wasm32-emscripten/$name" >"$runtime/$name.part"

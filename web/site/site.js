@@ -61,7 +61,7 @@ class WorkerTransport {
     this.send();
   }
 
-  /** Rejects a request. A running one goes on, because a worker cannot be interrupted; the next one waits for it. */
+  /** Rejects a request. A running computation continues, because a worker cannot be interrupted; the next request waits for it. */
   abort(request) {
     request.reject(cancelled());
     const at = this.waiting.indexOf(request);

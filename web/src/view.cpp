@@ -1,4 +1,6 @@
 // The functions that web/site/worker.js calls: the session of `ahm view`, without a server. The module has one thread.
+#include "output/view.hpp"
+
 #include <cstdint>
 #include <cstdlib>
 #include <memory>
@@ -9,14 +11,14 @@
 
 #include "ahm/error.hpp"
 #include "ahm/io/memory_files.hpp"
-#include "output/view.hpp"
 #include "output/wording.hpp"
 #include "progress.hpp"
 
 // NOLINTBEGIN(readability-identifier-naming)
 #define AHM_EXPORT(name) extern "C" [[clang::export_name(#name)]]
-extern "C" [[clang::import_module("ahm"), clang::import_name("progress")]] void ahm_progress(const char* stage, std::size_t bytes,
-                                                                                          double fraction);
+extern "C" [[clang::import_module("ahm"), clang::import_name("progress")]] void ahm_progress(const char* stage,
+                                                                                             std::size_t bytes,
+                                                                                             double fraction);
 
 namespace ahm::web {
 

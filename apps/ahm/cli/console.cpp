@@ -112,8 +112,8 @@ struct ProgressDisplay::Painter {
   void draw() {
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     if (seconds < 1.0) return;
-    print_to_stderr(
-        fmt::format("{}[{}] {:.0f} s  {}", clear_line, bar(fraction, seconds), std::floor(seconds), stage.substr(0, 32)));
+    print_to_stderr(fmt::format("{}[{}] {:.0f} s  {}", clear_line, bar(fraction, seconds), std::floor(seconds),
+                                stage.substr(0, 32)));
     is_drawn = true;
   }
 };

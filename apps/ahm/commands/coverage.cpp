@@ -1,3 +1,5 @@
+#include "ahm/applications/coverage.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -5,7 +7,6 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "ahm/applications/coverage.hpp"
 #include "ahm/maps/quality.hpp"
 #include "cli/option_adders.hpp"
 #include "cli/source_list.hpp"

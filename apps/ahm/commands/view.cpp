@@ -1,3 +1,5 @@
+#include "output/view.hpp"
+
 #include <fmt/format.h>
 
 #include "ahm/error.hpp"
@@ -6,7 +8,6 @@
 #include "cli/option_adders.hpp"
 #include "cli/source_list.hpp"
 #include "commands/subcommand.hpp"
-#include "output/view.hpp"
 
 namespace ahm::app {
 namespace {

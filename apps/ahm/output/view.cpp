@@ -54,8 +54,7 @@ viewer::SessionOptions View::session_options(const ViewOptions& options) const {
                      {"coverage", {"csv", "ply", "vtp", "jsonl"}}};
   if (io::has_images()) session.formats["decal"] = {"glb", "ply"};
   session.worded = [](const Error& error) { return worded(error); };
-  session.write = [this](const std::filesystem::path& file, const RowLogMap& rows,
-                                     const std::vector<double>& quality) {
+  session.write = [this](const std::filesystem::path& file, const RowLogMap& rows, const std::vector<double>& quality) {
     io::Table table = table_of(input_.geometry, normals_, input_.geometry.colors);
     add_map(table, rows, quality);
     io::write(file, table);
@@ -68,8 +67,8 @@ viewer::SessionOptions View::session_options(const ViewOptions& options) const {
   session.write_coverage = [](const std::filesystem::path& file, const CoveragePath& path) {
     write_coverage(file.string(), "", path);
   };
-  session.write_decal = [this](const std::filesystem::path& file, const InverseMap& inverse,
-                                 const DecalOptions& decal, const Image& image) {
+  session.write_decal = [this](const std::filesystem::path& file, const InverseMap& inverse, const DecalOptions& decal,
+                               const Image& image) {
     if (file.extension() == ".ply") {
       const Colors colors = painted(input_, image_coordinates_of_vertices(inverse, decal), image);
       return io::write(file, painted_table(input_, colors));

@@ -17,7 +17,7 @@ struct ViewOptions {
   InputOptions input;
   std::optional<SourceSpec> source;  ///< source of the first map; none: in the middle of the picture
   SolveOptions solve;
-  bool local = false;  ///< the first maps have a radius
+  bool local = false;                                                          ///< the first maps have a radius
   std::function<void(std::string_view stage, double fraction)> progress = {};  ///< of the requests
 };
 

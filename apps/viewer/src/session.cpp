@@ -315,8 +315,8 @@ struct Session::Impl {
   }
 
   /// Computes a map. @param placed  the source with the u axis of the settings
-  LogMap map(const SurfacePoint& source, const SurfaceSource& placed, const Settings& settings,
-             const StopToken& stop, bool frames = false) {
+  LogMap map(const SurfacePoint& source, const SurfaceSource& placed, const Settings& settings, const StopToken& stop,
+             bool frames = false) {
     const double radius = radius_of(settings);
     const auto u_axis = placed.frame ? std::optional(placed.frame->x) : std::nullopt;
     if (settings.method == Method::polar)
