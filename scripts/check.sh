@@ -19,7 +19,7 @@ words() {
 
 sources() {
   git ls-files "$@" ':!benchmarks' ':!examples' ':!python' ':!scripts' ':!libahm/conformance' ':!tests' ':!backends/pointcloud/pcl' ':!*/pcl_*' \
-    ':!*/no_*.cpp' ':!*/stb.cpp' ':!*/pack.cpp'
+    ':!*/no_*.cpp' ':!*/stb.cpp' ':!*/pack.cpp' ':!*/memory_files.cpp' ':!web'
 }
 
 # Configures a build folder for clang-tidy; nothing has to be built.

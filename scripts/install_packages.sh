@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
 # Installs the Debian packages for a task. Prints nothing if all are installed.
-#   install_packages.sh [program|tests|checks|docs|packages|parity|web]
+#   install_packages.sh [program|tests|checks|docs|packages|parity|web|wheel]
 # program: the program without PCL, for scripts/demo.sh; tests (default): everything, including tests and benchmarks;
 # checks: tests, and the tools of clang; docs: tests, and the tools for the documentation site; packages: tests, and the
-# tools for Debian packages; parity: tests, and the libraries of scripts/parity.sh; web: the compiler for WebAssembly.
+# tools for Debian packages; parity: tests, and the libraries of scripts/parity.sh; web: the compiler for WebAssembly;
+# wheel: the libraries and tools of scripts/wheel.sh.
 set -euo pipefail
 
 program=(
@@ -32,7 +33,10 @@ checks=("${tests[@]}" clang libclang-rt-14-dev clang-format clang-tidy)
 debian=("${tests[@]}" dpkg-dev pkg-config file debootstrap)
 docs=("${tests[@]}" doxygen python3-sphinx python3-myst-parser furo python3-sphinx-copybutton linkchecker pngquant)
 parity=("${tests[@]}" python3-vtk9 python3-open3d python3-nibabel connectome-workbench python3-pandas)
-web=(cmake ninja-build libeigen3-dev libnanoflann-dev clang-19 lld-19 wasi-libc libc++-19-dev-wasm32 libc++abi-19-dev-wasm32 libclang-rt-19-dev-wasm32)
+web=(cmake ninja-build libeigen3-dev libnanoflann-dev clang-19 lld-19 wasi-libc libc++-19-dev-wasm32 libc++abi-19-dev-wasm32 libclang-rt-19-dev-wasm32
+  libfmt-dev nlohmann-json3-dev libstb-dev libjs-three chromium chromium-driver python3-selenium)  # the site and its tests
+wheel=(cmake ninja-build g++ libeigen3-dev libnanoflann-dev nlohmann-json3-dev libstb-dev binutils
+  pybind11-dev python3-pybind11 python3-dev python3-numpy python3-pytest python3-venv python3-pip python3-wheel)
 case "${1:-tests}" in
   program) packages=("${program[@]}") ;;
   tests) packages=("${tests[@]}") ;;
@@ -41,7 +45,8 @@ case "${1:-tests}" in
   packages) packages=("${debian[@]}") ;;
   parity) packages=("${parity[@]}") ;;
   web) packages=("${web[@]}") ;;
-  *) echo "error: install_packages.sh [program|tests|checks|docs|packages|parity|web]" >&2; exit 2 ;;
+  wheel) packages=("${wheel[@]}") ;;
+  *) echo "error: install_packages.sh [program|tests|checks|docs|packages|parity|web|wheel]" >&2; exit 2 ;;
 esac
 
 missing=()

@@ -48,6 +48,24 @@ export interface Path {
   status: string;
 }
 
+/** The log maps of many sources within a radius. Source s has the entries begin[s] to begin[s + 1] - 1, nearest first. */
+export interface LocalMaps {
+  /** Number of sources + 1. */
+  begin: Int32Array;
+  /** Row of each entry. The row of a source is its own first entry. */
+  row: Int32Array;
+  /** Coordinates in the tangent plane of the source, world units. */
+  u: Float64Array;
+  v: Float64Array;
+  /** Geodesic distance, world units. */
+  distance: Float64Array;
+  /** Area of the row, for integrals, world units squared. */
+  weight: Float64Array;
+  /** Parallel transport from the frame of the source to the frame of the row: a rotation. */
+  cos: Float64Array;
+  sin: Float64Array;
+}
+
 /** A surface in the memory of the module. Freed by `free`, or some time after it became unreachable. */
 export class Surface {
   private constructor();
@@ -76,6 +94,13 @@ export class Solver {
   path(start: Place, end: Place): Path;
   /** The straightest geodesic along a vector of space. */
   trace(start: Place, direction: ArrayLike<number>, length: number): Path;
+  /**
+   * The log maps of all rows, or of some sources, within a radius. Not by the method exact.
+   * @param options.radius   world units; may be left out if k is given
+   * @param options.k        keep only this many nearest rows, the source included
+   * @param options.sources  default: source s is row s; rows without a vertex have no entries
+   */
+  localMaps(options: {radius?: number; k?: number; sources?: Place[]}): LocalMaps;
   free(): void;
 }
 

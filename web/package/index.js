@@ -1,5 +1,7 @@
 // libahm in WebAssembly: a thin layer over the functions of web/src/abi.cpp. Types and documentation are in index.d.ts.
 
+import {wasi} from './wasi.js';
+
 export class AhmError extends Error {
   get name() {
     return this.constructor.name;
@@ -198,6 +200,18 @@ export class Solver {
     );
   }
 
+  localMaps({radius = 0, k = 0, sources = null} = {}) {
+    const {module} = this.#handle;
+    checkIntegers([k], 'k');
+    if (sources !== null && sources.length === 0) throw new InvalidArgument('sources: empty; leave it out for all rows');
+    return module.withArrays([sources && places(sources)], (pointer) =>
+      module.columns(module.exports.ahm_local_maps(this.#handle.get(), pointer, sources?.length ?? 0, radius, k), (column) => {
+        const [u, v, distance, weight, cos, sin] = [2, 3, 4, 5, 6, 7].map(column);
+        return {begin: Int32Array.from(column(0)), row: Int32Array.from(column(1)), u, v, distance, weight, cos, sin};
+      }),
+    );
+  }
+
   free() {
     this.#handle.free();
   }
@@ -262,32 +276,6 @@ export class Library {
   }
 }
 
-/** The functions of WASI that the module imports. It does not use files; time is for its statistics. */
-function imports(compiled, memory) {
-  const unsupported = 52;  // ENOSYS
-  const functions = {
-    clock_time_get(_clock, _precision, result) {
-      const nanoseconds = BigInt(Math.round(performance.now() * 1e6));
-      new DataView(memory().buffer).setBigUint64(result, nanoseconds, true);
-      return 0;
-    },
-    environ_sizes_get(count, size) {
-      const view = new DataView(memory().buffer);
-      view.setUint32(count, 0, true);
-      view.setUint32(size, 0, true);
-      return 0;
-    },
-    environ_get: () => 0,
-    proc_exit(code) {
-      throw new AhmError(`the module ended with status ${code}`);
-    },
-  };
-  const result = {};
-  for (const {module, name} of WebAssembly.Module.imports(compiled))
-    (result[module] ??= {})[name] = functions[name] ?? (() => unsupported);
-  return result;
-}
-
 async function compile(source) {
   if (source instanceof WebAssembly.Module) return source;
   if (source instanceof ArrayBuffer || ArrayBuffer.isView(source)) return WebAssembly.compile(source);
@@ -304,7 +292,7 @@ async function compile(source) {
 export async function load(source) {
   const compiled = await compile(source);
   let memory;
-  const {exports} = await WebAssembly.instantiate(compiled, imports(compiled, () => memory));
+  const {exports} = await WebAssembly.instantiate(compiled, wasi(compiled, () => memory));
   memory = exports.memory;
   exports._initialize();
   return new Library(new Module(exports));

@@ -212,7 +212,29 @@ AHM_EXPORT(ahm_trace)
 int ahm_trace(const ahm::SurfaceSolver* solver, const double* place, double x, double y, double z, double length) {
   return guarded([&] { return keep(solver->trace(read_places(place, 1).front(), {x, y, z}, length)); });
 }
-// NOLINTEND(readability-identifier-naming)
 
-// Called for objects with thread storage. They live as long as the module, which has one thread.
-extern "C" int __cxa_thread_atexit(void (*)(void*), void*, void*) noexcept { return 0; }
+/// Columns: begin of the entries of each source, and per entry row, u, v, distance, weight, cos and sin of the transport.
+/// @param count  0: every row is a source
+AHM_EXPORT(ahm_local_maps)
+int ahm_local_maps(const ahm::SurfaceSolver* solver, const double* places, std::uint32_t count, double radius, int k) {
+  return guarded([&] {
+    ahm::LocalMapOptions options;
+    options.radius = radius;
+    options.k = k;
+    const ahm::RowLocalMaps maps =
+        count == 0 ? solver->local_maps(options) : solver->local_maps(read_places(places, count), options);
+    columns.assign(8, {});
+    columns[0].assign(maps.indptr.begin(), maps.indptr.end());
+    for (std::size_t e = 0; e < maps.neighbors.size(); ++e) {
+      columns[1].push_back(static_cast<double>(maps.neighbors[e].index));
+      for (std::size_t c = 0; c < 2; ++c) {
+        columns[2 + c].push_back(maps.logs[2 * e + c]);
+        columns[6 + c].push_back(maps.transports[2 * e + c]);
+      }
+    }
+    columns[4] = maps.distances;
+    columns[5] = maps.weights;
+    return 1;
+  });
+}
+// NOLINTEND(readability-identifier-naming)

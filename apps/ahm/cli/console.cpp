@@ -7,10 +7,14 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cmath>
+#include <condition_variable>
 #include <cstdio>
 #include <cstdlib>
+#include <mutex>
 #include <system_error>
+#include <thread>
 
 #include "ahm/error.hpp"
 
@@ -74,49 +78,66 @@ std::string bar(double fraction, double seconds) {
 
 }  // namespace
 
+struct ProgressDisplay::Painter {
+  std::mutex mutex;
+  std::condition_variable_any wake;
+  std::chrono::steady_clock::time_point begin = std::chrono::steady_clock::now();
+  std::string stage;
+  double fraction = 0;
+  bool is_drawn = false;
+  // Draws in a thread of its own: the longest stage, the factorization, reports no progress, so only the clock changes.
+  std::jthread thread{[this](const std::stop_token& stop) { run(stop); }};  // last: it uses the members above
+
+  ~Painter() {
+    thread.request_stop();
+    thread.join();
+    clear();
+  }
+
+  void clear() {
+    const std::scoped_lock lock(mutex);
+    if (is_drawn) print_to_stderr(clear_line);
+    is_drawn = false;
+    stage.clear();
+  }
+
+  void run(const std::stop_token& stop) {
+    std::unique_lock lock(mutex);
+    while (!stop.stop_requested()) {
+      wake.wait_for(lock, stop, std::chrono::milliseconds(200), [] { return false; });
+      if (!stop.stop_requested() && !stage.empty()) draw();
+    }
+  }
+
+  void draw() {
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    if (seconds < 1.0) return;
+    print_to_stderr(fmt::format("{}[{}] {:.0f} s  {}", clear_line, bar(fraction, seconds), std::floor(seconds),
+                                stage.substr(0, 32)));
+    is_drawn = true;
+  }
+};
+
 ProgressDisplay::ProgressDisplay(bool shown) {
-  if (shown && is_terminal()) painter_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+  if (shown && is_terminal()) painter_ = std::make_unique<Painter>();
 }
 
-ProgressDisplay::~ProgressDisplay() {
-  painter_.request_stop();
-  if (painter_.joinable()) painter_.join();
-  clear();
-}
+ProgressDisplay::~ProgressDisplay() = default;
 
 void ProgressDisplay::update(std::string_view stage, double fraction) {
-  const std::scoped_lock lock(mutex_);
-  stage_ = stage;
-  fraction_ = std::clamp(std::isfinite(fraction) ? fraction : 0.0, 0.0, 1.0);
+  if (!painter_) return;
+  const std::scoped_lock lock(painter_->mutex);
+  painter_->stage = stage;
+  painter_->fraction = std::clamp(std::isfinite(fraction) ? fraction : 0.0, 0.0, 1.0);
 }
 
 Progress ProgressDisplay::progress() {
-  if (!painter_.joinable()) return {};
+  if (!painter_) return {};
   return {[this](std::string_view stage, double fraction) { update(stage, fraction); }, {}};
 }
 
 void ProgressDisplay::clear() {
-  const std::scoped_lock lock(mutex_);
-  if (drawn_) print_to_stderr(clear_line);
-  drawn_ = false;
-  stage_.clear();
-}
-
-// Draws in a thread of its own: the longest stage, the factorization, reports no progress, so only the clock changes.
-void ProgressDisplay::run(const std::stop_token& stop) {
-  std::unique_lock lock(mutex_);
-  while (!stop.stop_requested()) {
-    wake_.wait_for(lock, stop, std::chrono::milliseconds(200), [] { return false; });
-    if (!stop.stop_requested() && !stage_.empty()) draw();
-  }
-}
-
-void ProgressDisplay::draw() {
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
-  if (seconds < 1.0) return;
-  print_to_stderr(fmt::format("{}[{}] {:.0f} s  {}", clear_line, bar(fraction_, seconds), std::floor(seconds),
-                              stage_.substr(0, 32)));
-  drawn_ = true;
+  if (painter_) painter_->clear();
 }
 
 }  // namespace ahm::app

@@ -2,12 +2,9 @@
 /// Standard output, standard error, progress display and the user's browser.
 #pragma once
 
-#include <chrono>
-#include <condition_variable>
-#include <mutex>
+#include <memory>
 #include <string>
 #include <string_view>
-#include <thread>
 
 #include "ahm/progress.hpp"
 
@@ -53,16 +50,8 @@ class ProgressDisplay {
   void clear();
 
  private:
-  void run(const std::stop_token& stop);
-  void draw();
-
-  std::mutex mutex_;
-  std::condition_variable_any wake_;
-  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
-  std::string stage_;
-  double fraction_ = 0;
-  bool drawn_ = false;
-  std::jthread painter_;  // last, because the thread uses the members above
+  struct Painter;
+  std::unique_ptr<Painter> painter_;  ///< null: draws nothing
 };
 
 }  // namespace ahm::app

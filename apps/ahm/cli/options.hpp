@@ -42,6 +42,9 @@ struct InputOptions {
   std::vector<std::uint8_t> counts_as_reversed;  ///< with --local: `trimesh::MeshOptions::counts_as_reversed`
 };
 
+/// The input options that differ from the defaults, as command-line arguments, without the path.
+std::vector<std::string> option_words(const InputOptions& options);
+
 /// Options of the computation of maps.
 struct SolveOptions : HeatOptions {
   std::optional<Method> method = Method::heat;  ///< none: the method that suits the surface

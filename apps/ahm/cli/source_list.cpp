@@ -14,6 +14,7 @@
 #include <stdexcept>
 
 #include "ahm/error.hpp"
+#include "ahm/util/from_chars.hpp"
 
 namespace ahm::app {
 namespace {
@@ -31,7 +32,7 @@ std::string_view without_plus(std::string_view text) {
 double parse_number(std::string_view text) {
   const std::string_view digits = without_plus(text);
   double value = 0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  const auto [end, error] = detail::from_chars(digits.data(), digits.data() + digits.size(), value);
   if (error == std::errc::result_out_of_range) refuse(text, "a number that fits double precision");
   if (error != std::errc{} || end != digits.data() + digits.size()) refuse(text, "a number");
   if (!std::isfinite(value)) refuse(text, "a finite number");

@@ -30,13 +30,6 @@ double processor_seconds() {
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-std::string bytes_as_text(std::int64_t bytes) {
-  const auto x = static_cast<double>(bytes);
-  if (x >= 1e9) return fmt::format("{:.2f} GB", x / 1e9);
-  if (x >= 1e6) return fmt::format("{:.0f} MB", x / 1e6);
-  return fmt::format("{:.0f} kB", x / 1e3);
-}
-
 nlohmann::ordered_json versions() {
   const LinearAlgebraInfo algebra = linear_algebra_info();
   nlohmann::ordered_json result;

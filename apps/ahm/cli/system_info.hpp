@@ -14,9 +14,6 @@ std::int64_t peak_rss_bytes();
 /// Processor time of the process so far, over all threads, seconds.
 double processor_seconds();
 
-/// A number of bytes as text, in powers of 1000: "1.23 GB", "45 MB", "6 kB".
-std::string bytes_as_text(std::int64_t bytes);
-
 /// Versions of ahm, of the libraries it uses, and the BLAS in use.
 nlohmann::ordered_json versions();
 

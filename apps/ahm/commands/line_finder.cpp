@@ -6,12 +6,9 @@
 #include <utility>
 
 #include "ahm/error.hpp"
-#include "ahm/io/formats.hpp"
-#include "ahm/io/write.hpp"
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/surface/surface_paths.hpp"
 #include "ahm/util/parallel.hpp"
-#include "ahm/util/vec.hpp"
 #include "cli/source_list.hpp"
 #include "output/output_paths.hpp"
 #include "output/results.hpp"
@@ -75,26 +72,6 @@ FoundLine LineFinder::tightened(std::span<const exact::MeshPoint> loop) const {
 LogMap LineFinder::map(const SurfacePoint& point) const {
   if (geodesics_) return geodesics_->log_map(point);
   return LogMapSolver(surface_.graph()).solve(surface_.source(point).source);
-}
-
-void write_polylines(const std::string& file, const std::string& format, const Polylines& curves) {
-  if (format.empty() && io::lower_extension(file) == ".obj")
-    return io::write_obj_lines(file, curves.points, curves.begin);
-  std::vector<double> arclength, number, level;
-  io::Table table{.title = "curve by libahm", .text = true};
-  for (std::size_t k = 0; k < curves.begin.size(); ++k)
-    for (Index i = curves.begin[k]; i < curves.end(k); ++i) {
-      number.push_back(static_cast<double>(k));
-      if (!curves.levels.empty()) level.push_back(curves.levels[k]);
-      const bool first = i == curves.begin[k];
-      arclength.push_back(first ? 0 : arclength.back() + distance(curves.points[i - 1], curves.points[i]));
-      if (!first) table.edges.push_back({i - 1, i});
-    }
-  if (curves.numbered) table.add("curve", number);
-  if (!level.empty()) table.add("level", level);
-  table.add({"x", "y", "z"}, curves.points);
-  table.add("arclength", arclength);
-  io::write(file, table, format);
 }
 
 namespace {

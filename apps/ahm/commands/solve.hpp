@@ -13,9 +13,6 @@
 
 namespace ahm::app {
 
-/// The input options that differ from the defaults, as command-line arguments, without the path.
-std::vector<std::string> option_words(const InputOptions& options);
-
 /// A solver with the options, which also set the variant and threads of all maps.
 /// @param maps  expected number of maps; 0: many
 /// @throws ResourceExhausted (the factors of a global solve do not fit the memory)

@@ -50,6 +50,13 @@ std::string worded(const Error& error) {
   return error.what();
 }
 
+std::string bytes_as_text(std::int64_t bytes) {
+  const auto x = static_cast<double>(bytes);
+  if (x >= 1e9) return fmt::format("{:.2f} GB", x / 1e9);
+  if (x >= 1e6) return fmt::format("{:.0f} MB", x / 1e6);
+  return fmt::format("{:.0f} kB", x / 1e3);
+}
+
 nlohmann::ordered_json as_json(const Report& report) {
   nlohmann::ordered_json json;
   for (const auto& [id, value] : report) {

@@ -2,6 +2,7 @@
 /// Converts errors, counts and reports of the libraries to text and JSON.
 #pragma once
 
+#include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
@@ -20,5 +21,8 @@ std::string worded(const Error& error);
 
 /// A report as JSON; an id "group.name" becomes the entry `name` of the object `group`.
 nlohmann::ordered_json as_json(const Report& report);
+
+/// A number of bytes as text, in powers of 1000: "1.23 GB", "45 MB", "6 kB".
+std::string bytes_as_text(std::int64_t bytes);
 
 }  // namespace ahm::app

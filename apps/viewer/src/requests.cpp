@@ -5,13 +5,10 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <fstream>
-#include <iterator>
 #include <limits>
 
 #include "ahm/error.hpp"
 #include "ahm/io/image.hpp"
-#include "ahm/io/temporary_folder.hpp"
 #include "ahm/surface/mesh_repair.hpp"
 #include "ahm/util/shell.hpp"
 #include "ahm/util/text.hpp"
@@ -105,16 +102,6 @@ json session_info(const Surface& surface, const io::Geometry& geometry, const Se
   return info;
 }
 
-std::string exported(const std::string& format, const std::function<void(const std::filesystem::path&)>& write) {
-  const io::TemporaryFolder folder("ahm-view-");
-  const std::filesystem::path file = folder.directory() / ("map." + format);
-  write(file);
-  std::ifstream stream(file, std::ios::binary);
-  std::string bytes((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
-  if (!stream || bytes.empty()) throw IoError("cannot read the temporary file of the export");
-  return bytes;
-}
-
 namespace {
 
 std::string decoded(const std::string& base64) {
@@ -136,11 +123,8 @@ std::string decoded(const std::string& base64) {
 }  // namespace
 
 Image image_of(const std::string& base64) {
-  const io::TemporaryFolder folder("ahm-view-");
-  const std::filesystem::path file = folder.directory() / "image";
-  std::ofstream(file, std::ios::binary) << decoded(base64);
   try {
-    return io::read_image(file);
+    return io::decode_image(decoded(base64));
   } catch (const IoError&) {
     throw InvalidArgument("the image is not a PNG or JPEG file that ahm can read");
   }

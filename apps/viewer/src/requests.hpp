@@ -1,8 +1,6 @@
 // Parsing of requests, and command lines that reproduce their results.
 #pragma once
 
-#include <filesystem>
-#include <functional>
 #include <nlohmann/json.hpp>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -25,9 +23,6 @@ std::string command(const SessionOptions& session, const std::string& name, cons
 
 /// The answer to "info": a description of the surface, the supported choices, and the initial settings.
 nlohmann::json session_info(const Surface& surface, const io::Geometry& geometry, const SessionOptions& options);
-
-/// Calls `write` with a temporary file of this extension. @return its bytes @throws IoError; as `write`
-std::string exported(const std::string& format, const std::function<void(const std::filesystem::path&)>& write);
 
 /// Decodes a PNG or JPEG file in base64. @throws InvalidArgument (invalid base64, invalid image)
 Image image_of(const std::string& base64);

@@ -12,8 +12,8 @@
 #include <thread>
 #include <utility>
 
-#include "session.hpp"
 #include "token.hpp"
+#include "workers.hpp"
 
 namespace ahm::viewer {
 namespace {

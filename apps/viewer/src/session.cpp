@@ -1,4 +1,4 @@
-#include "session.hpp"
+#include "ahm/viewer/session.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,16 +6,20 @@
 #include <cstdint>
 #include <exception>
 #include <limits>
+#include <list>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <optional>
-#include <stop_token>
 #include <string>
+#ifndef AHM_NO_THREADS
+#include <thread>
+#endif
 
 #include "ahm/applications/stroke.hpp"
 #include "ahm/error.hpp"
+#include "ahm/io/atomic_file.hpp"
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/maps/quality.hpp"
 #include "ahm/render/page.hpp"
@@ -24,7 +28,7 @@
 #include "ahm/surface/surface_paths.hpp"
 #include "ahm/surface/surface_triangles.hpp"
 #include "ahm/types.hpp"
-#include "ahm/viewer/session.hpp"
+#include "ahm/util/mutex.hpp"
 #include "requests.hpp"
 
 namespace ahm::viewer {
@@ -36,12 +40,12 @@ class Channels {
   /// Cancels the previous request of this client and kind.
   /// @param number  number of the request, if the client numbers them. If a request with a greater number has arrived before, this
   ///                request is cancelled instead
-  std::stop_token begin(const std::string& client, Kind kind, std::optional<Index> number) {
-    const std::lock_guard lock(mutex_);
+  StopToken begin(const std::string& client, Kind kind, std::optional<Index> number) {
+    const detail::Lock lock(mutex_);
     const std::pair key(client, kind);
     if (newest_.size() >= most && !newest_.contains(key)) forget_oldest();
     Entry& entry = newest_[key];
-    std::stop_source own;
+    StopSource own;
     if (number && entry.number && *number < *entry.number) {
       own.request_stop();
       return own.get_token();
@@ -52,10 +56,10 @@ class Channels {
   }
 
   /// A token for requests that only `stop_all` cancels.
-  std::stop_token until_the_end() const { return end_.get_token(); }
+  StopToken until_the_end() const { return end_.get_token(); }
 
   void stop_all() {
-    const std::lock_guard lock(mutex_);
+    const detail::Lock lock(mutex_);
     end_.request_stop();
     for (auto& [key, entry] : newest_) entry.stop.request_stop();
   }
@@ -63,7 +67,7 @@ class Channels {
  private:
   static constexpr std::size_t most = 192;
   struct Entry {
-    std::stop_source stop;
+    StopSource stop;
     std::uint64_t begun = 0;      ///< sequence number among all requests
     std::optional<Index> number;  ///< number from the client
   };
@@ -75,8 +79,8 @@ class Channels {
     newest_.erase(oldest);
   }
 
-  std::mutex mutex_;
-  std::stop_source end_;
+  detail::Mutex mutex_;
+  StopSource end_;
   std::map<std::pair<std::string, Kind>, Entry> newest_;
   std::uint64_t count_ = 0;
 };
@@ -91,7 +95,7 @@ class Makers {
 
   /// The heat solver for the settings: one of the last two, or a new one. On large surfaces, maps with a radius use the march, which
   /// requires no factorization of the whole graph; its time is proportional to the reached part.
-  const LogMapSolver& solver(const Settings& settings, const std::stop_token& stop) {
+  const LogMapSolver& solver(const Settings& settings, const Progress& progress) {
     const bool marched = settings.radius && is_large();
     const auto fits = [&](const Kept& kept) { return kept.t_coef == settings.t_coef && kept.marched == marched; };
     const auto found = std::find_if(kept_.begin(), kept_.end(), fits);
@@ -103,7 +107,7 @@ class Makers {
       heat.t_coef = settings.t_coef;
       heat.strategy = marched ? Strategy::march : Strategy::automatic;
       heat.threads = threads_;
-      heat.progress.stop = stop;
+      heat.progress = progress;
       kept_.push_front({settings.t_coef, marched, LogMapSolver(surface_.graph(), heat)});
     }
     return kept_.front().solver;
@@ -167,17 +171,11 @@ inline double radius_of(const Settings& settings) {
   return settings.radius.value_or(std::numeric_limits<double>::infinity());
 }
 
-inline Progress until(const std::stop_token& stop) {
-  Progress progress;
-  progress.stop = stop;
-  return progress;
-}
-
-inline MapOptions heat_options(const Settings& settings, double radius, const std::stop_token& stop) {
+inline MapOptions heat_options(const Settings& settings, double radius, const Progress& progress) {
   MapOptions options;
   options.variant = settings.variant;
   options.radius = radius;
-  options.progress = until(stop);
+  options.progress = progress;
   return options;
 }
 
@@ -228,10 +226,12 @@ struct Session::Impl {
   render::Scene scene;
   render::PageSurface page;
   Channels channels;
-  std::mutex work;  ///< guards `makers`; one map at a time
+  detail::Mutex work;  ///< guards `makers`; one map at a time
   std::atomic<int> waiting{0};
   Makers makers;
+#ifndef AHM_NO_THREADS
   std::jthread warm_up;
+#endif
 
   Impl(const Surface& given, const io::Geometry& read, SessionOptions wanted)
       : surface(given),
@@ -243,13 +243,19 @@ struct Session::Impl {
         scene(scene_of(given, read, drawn, triangles, normals)),
         page(titled(), picture()),
         makers(given, options.threads) {
+#ifndef AHM_NO_THREADS
     warm_up = std::jthread([this](const std::stop_token& stop) { prepare(stop); });
+#endif
   }
 
   ~Impl() {
     channels.stop_all();
+#ifndef AHM_NO_THREADS
     warm_up.request_stop();
+#endif
   }
+
+  Progress until(const StopToken& stop) const { return {options.progress, stop}; }
 
   SurfacePoint point_in(const Request& request, const char* name) const {
     return standing_for(surface, request.point(name));
@@ -276,12 +282,12 @@ struct Session::Impl {
   }
 
   /// Creates the solver for the first click. Ignores errors, because the first request repeats and reports them.
-  void prepare(const std::stop_token& stop) {
-    const std::lock_guard lock(work);
+  void prepare(const StopToken& stop) {
+    const detail::Lock lock(work);
     try {
       switch (options.settings.method) {
         case Method::heat:
-          makers.solver(options.settings, stop);
+          makers.solver(options.settings, until(stop));
           break;
         case Method::polar:
           makers.polar();
@@ -296,30 +302,30 @@ struct Session::Impl {
 
   /// Calls `make` when earlier requests have finished.
   template <class Make>
-  auto in_turn(const std::stop_token& stop, const Make& make) {
+  auto in_turn(const StopToken& stop, const Make& make) {
     struct Place {
       std::atomic<int>& count;
       explicit Place(std::atomic<int>& waiting) : count(waiting) { ++count; }
       ~Place() { --count; }
     } const place(waiting);
     if (place.count > most_waiting) throw Busy{};
-    const std::lock_guard lock(work);
+    const detail::Lock lock(work);
     if (stop.stop_requested()) throw Cancelled("superseded by a newer request");
     return make();
   }
 
   /// Computes a map. @param placed  the source with the u axis of the settings
-  LogMap map(const SurfacePoint& source, const SurfaceSource& placed, const Settings& settings,
-             const std::stop_token& stop, bool frames = false) {
+  LogMap map(const SurfacePoint& source, const SurfaceSource& placed, const Settings& settings, const StopToken& stop,
+             bool frames = false) {
     const double radius = radius_of(settings);
     const auto u_axis = placed.frame ? std::optional(placed.frame->x) : std::nullopt;
     if (settings.method == Method::polar)
       return makers.polar().log_map(source, u_axis, {.radius = radius, .frames = frames, .progress = until(stop)});
     if (settings.method == Method::exact)
       return makers.geodesics().log_map(source, u_axis, {.radius = radius, .frames = frames, .progress = until(stop)});
-    MapOptions heat = heat_options(settings, radius, stop);
+    MapOptions heat = heat_options(settings, radius, until(stop));
     heat.frames = frames;
-    return makers.solver(settings, stop).solve(placed.source, heat);
+    return makers.solver(settings, until(stop)).solve(placed.source, heat);
   }
 
   std::vector<double> quality_of(const LogMap& map, const RowLogMap& rows) const {
@@ -342,7 +348,7 @@ struct Session::Impl {
   }
 
   Answer answer_map(const Request& request) {
-    const std::stop_token stop = channels.begin(request.client(), Channels::Kind::map, request.number());
+    const StopToken stop = channels.begin(request.client(), Channels::Kind::map, request.number());
     const SurfacePoint source = point_in(request, "source");
     const Settings settings = request.settings(options.settings);
     const SurfaceSource placed = surface.source(source, settings.u_axis);
@@ -368,15 +374,15 @@ struct Session::Impl {
   }
 
   /// Computes the map of a curve, up to the radius that its distances require.
-  LogMap stroke(const SurfaceCurve& curve, const Settings& settings, const std::stop_token& stop) {
+  LogMap stroke(const SurfaceCurve& curve, const Settings& settings, const StopToken& stop) {
     const double radius = map_radius_of_curve(curve, radius_of(settings));
     if (settings.method == Method::exact)
       return makers.geodesics().log_map(curve.samples, {.radius = radius, .progress = until(stop)}).map;
-    return makers.solver(settings, stop).solve(curve.source, heat_options(settings, radius, stop));
+    return makers.solver(settings, until(stop)).solve(curve.source, heat_options(settings, radius, until(stop)));
   }
 
   Answer answer_stroke(const Request& request) {
-    const std::stop_token stop = channels.begin(request.client(), Channels::Kind::map, request.number());
+    const StopToken stop = channels.begin(request.client(), Channels::Kind::map, request.number());
     const Settings settings = of_curve(request.settings(options.settings));
     const SurfaceCurve curve = curve_of(request);
     const LogMap made = in_turn(stop, [&] { return stroke(curve, settings, stop); });
@@ -391,7 +397,7 @@ struct Session::Impl {
                    {{"command", command(options, "stroke", {"--curve", list, "-o", "stroke.csv"}, settings)}})};
   }
 
-  SurfacePath path_between(const std::array<SurfacePoint, 2>& ends, const std::stop_token& stop) {
+  SurfacePath path_between(const std::array<SurfacePoint, 2>& ends, const StopToken& stop) {
     if (surface.faces().size() == 0) return shortest_line(surface, ends[0], ends[1]);
     const ExactGeodesics& geodesics = makers.geodesics();
     const exact::GeodesicPath path = geodesics.paths(std::span(&ends, 1), until(stop), 1).front();
@@ -404,7 +410,7 @@ struct Session::Impl {
     SurfacePoint from, to;
   };
 
-  SurfacePath path(const Ends& ends, const std::stop_token& stop) {
+  SurfacePath path(const Ends& ends, const StopToken& stop) {
     for (const SurfacePoint& end : {ends.from, ends.to}) surface.source(end);  // checks the point
     SurfacePath path = in_turn(stop, [&] { return path_between({ends.from, ends.to}, stop); });
     if (path.status != Status::ok)
@@ -413,7 +419,7 @@ struct Session::Impl {
   }
 
   Answer answer_path(const Request& request) {
-    const std::stop_token stop = channels.begin(request.client(), Channels::Kind::path, request.number());
+    const StopToken stop = channels.begin(request.client(), Channels::Kind::path, request.number());
     const Ends ends{point_in(request, "from"), point_in(request, "to")};
     const SurfacePath made = path(ends, stop);
     return answer_of(
@@ -426,7 +432,7 @@ struct Session::Impl {
 
   /// @param settings  result of `of_patch`
   CoveragePath tool_path(const SurfacePoint& source, const CoverageOptions& wanted, const Settings& settings,
-                         const std::stop_token& stop) {
+                         const StopToken& stop) {
     const SurfaceSource placed = surface.source(source, settings.u_axis);
     Settings reach = settings;  // the whole map is not required, and its factorization takes long
     if (makers.is_large()) reach.radius = 1.5 * wanted.radius;
@@ -442,7 +448,7 @@ struct Session::Impl {
   }
 
   Answer answer_coverage(const Request& request) {
-    const std::stop_token stop = channels.begin(request.client(), Channels::Kind::coverage, request.number());
+    const StopToken stop = channels.begin(request.client(), Channels::Kind::coverage, request.number());
     const SurfacePoint source = point_in(request, "source");
     const Settings settings = of_patch(request.settings(options.settings));
     const CoverageOptions wanted = request.coverage();
@@ -470,7 +476,7 @@ struct Session::Impl {
                              settings)}});
   }
 
-  void write_map(const Request& request, const std::filesystem::path& file, const std::stop_token& stop) {
+  void write_map(const Request& request, const std::filesystem::path& file, const StopToken& stop) {
     const Settings settings = request.settings(options.settings);
     const SurfacePoint source = point_in(request, "source");
     const SurfaceSource placed = surface.source(source, settings.u_axis);
@@ -479,7 +485,7 @@ struct Session::Impl {
     options.write(file, rows, quality_of(made, rows));
   }
 
-  void write_stroke(const Request& request, const std::filesystem::path& file, const std::stop_token& stop) {
+  void write_stroke(const Request& request, const std::filesystem::path& file, const StopToken& stop) {
     const Settings settings = of_curve(request.settings(options.settings));
     const SurfaceCurve curve = curve_of(request);
     const LogMap made = in_turn(stop, [&] { return stroke(curve, settings, stop); });
@@ -487,7 +493,7 @@ struct Session::Impl {
     options.write(file, rows, quality_of(made, rows));
   }
 
-  void write_decal(const Request& request, const std::filesystem::path& file, const std::stop_token& stop) {
+  void write_decal(const Request& request, const std::filesystem::path& file, const StopToken& stop) {
     const Image image = image_of(request.text("image"));
     DecalOptions decal = decal_of(image, request.positive("size"));
     decal.angle = request.finite("angle") * std::numbers::pi / 180;
@@ -505,7 +511,7 @@ struct Session::Impl {
     if (kinds.empty()) throw InvalidArgument("request: this session has no export formats");
     const std::string what = request.word("what", kinds);
     const std::string format = request.word("format", options.formats.at(what));
-    const std::stop_token stop = channels.until_the_end();
+    const StopToken stop = channels.until_the_end();
     const auto write = [&](const std::filesystem::path& file) {
       if (what == "map") return write_map(request, file, stop);
       if (what == "stroke") return write_stroke(request, file, stop);
@@ -515,7 +521,7 @@ struct Session::Impl {
       options.write_coverage(file, tool_path(point_in(request, "source"), request.coverage(),
                                              of_patch(request.settings(options.settings)), stop));
     };
-    return {200, "application/octet-stream", exported(format, write)};
+    return {200, "application/octet-stream", io::written_bytes("map." + format, write)};
   }
 
   Answer answer(std::string_view name, std::string_view body) {

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "ahm/util/mutex.hpp"
 #include "ahm/util/parallel.hpp"
 
 namespace ahm::render {
@@ -57,7 +58,7 @@ class Crevices {
 void fill_pinholes(Film& film, float gap, unsigned threads) {
   const std::array<Step, 8> steps = circle(1.5F, 0);
   std::vector<std::pair<std::size_t, Pixel>> filled;
-  std::mutex mutex;
+  detail::Mutex mutex;
   detail::parallel_chunks(film.height, 16, threads, [&](Offset begin, Offset end) {
     std::vector<std::pair<std::size_t, Pixel>> found;
     for (int y = static_cast<int>(begin); y < end; ++y)
@@ -75,7 +76,7 @@ void fill_pinholes(Film& film, float gap, unsigned threads) {
         }
         if (nearer >= 7) found.emplace_back(&here - film.pixels.data(), *other);
       }
-    std::scoped_lock lock(mutex);
+    const detail::Lock lock(mutex);
     filled.insert(filled.end(), found.begin(), found.end());
   });
   for (const auto& [place, pixel] : filled) film.pixels[place] = pixel;  // any order, because each pixel occurs once

@@ -37,14 +37,15 @@ void check_faces(const Scene& scene) {
   require(
       scene.face_begin.front() == 0 && scene.face_begin.back() == corners,
       "scene.face_begin: must start with 0 and end with the size of scene.face_vertices, " + std::to_string(corners));
+  // Messages for errors only: these loops run for every map of the viewer.
   for (std::size_t f = 1; f < scene.face_begin.size(); ++f)
-    require(scene.face_begin[f - 1] <= scene.face_begin[f],
-            "scene.face_begin[" + std::to_string(f) + "]: smaller than the entry before it");
+    if (scene.face_begin[f - 1] > scene.face_begin[f])
+      throw InvalidArgument("scene.face_begin[" + std::to_string(f) + "]: smaller than the entry before it");
   for (std::size_t k = 0; k < scene.face_vertices.size(); ++k) {
     const Index vertex = scene.face_vertices[k];
-    require(vertex >= 0 && static_cast<std::size_t>(vertex) < scene.points.size(),
-            "scene.face_vertices[" + std::to_string(k) + "] = " + std::to_string(vertex) + ": there are " +
-                detail::counted(scene.points.size(), "point"));
+    if (vertex < 0 || static_cast<std::size_t>(vertex) >= scene.points.size())
+      throw InvalidArgument("scene.face_vertices[" + std::to_string(k) + "] = " + std::to_string(vertex) +
+                            ": there are " + detail::counted(scene.points.size(), "point"));
   }
 }
 

@@ -84,10 +84,14 @@ void fill_in(std::string_view page, const Values& values, const Write& write) {
 /// The values that do not depend on the data.
 Values fixed_values() {
   using namespace resources;
-  return {{"@STYLE@", style},    {"@PALETTE@", palette},  {"@THREE@", three},    {"@ORBIT_CONTROLS@", orbit_controls},
-          {"@DATA_JS@", data},   {"@PICK_JS@", pick},     {"@TEAR_JS@", tear},   {"@COARSE_JS@", coarse},
-          {"@PAINT_JS@", paint}, {"@SPLATS_JS@", splats}, {"@MARKS_JS@", marks}, {"@STAGE_JS@", stage},
-          {"@PANEL_JS@", panel}, {"@MAIN_JS@", main}};
+  return {{"@STYLE@", style},      {"@PALETTE@", palette},
+          {"@THREE@", three},      {"@ORBIT_CONTROLS@", orbit_controls},
+          {"@DATA_JS@", data},     {"@TRANSPORT_JS@", transport},
+          {"@PICK_JS@", pick},     {"@TEAR_JS@", tear},
+          {"@COARSE_JS@", coarse}, {"@PAINT_JS@", paint},
+          {"@SPLATS_JS@", splats}, {"@MARKS_JS@", marks},
+          {"@STAGE_JS@", stage},   {"@PANEL_JS@", panel},
+          {"@MAIN_JS@", main}};
 }
 
 }  // namespace

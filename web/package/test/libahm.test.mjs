@@ -88,6 +88,27 @@ test('places, radius, distances and paths', () => {
   near(trace.points.at(-3), 0.75, 1e-12, 'end of the trace');
 });
 
+test('local maps are the log maps of each row within the radius', () => {
+  const {positions, triangles} = square(21, (x, y) => 0.2 * x * y);
+  const solver = ahm.solver(ahm.triangleMesh(positions, triangles), {method: 'polar'});
+  const all = solver.localMaps({radius: 0.2});
+  assert.equal(all.begin.length, 442);
+  const row = 220, whole = solver.logMap(row, {radius: 0.2});
+  const entries = [...Array(all.begin[row + 1] - all.begin[row]).keys()].map((k) => all.begin[row] + k);
+  assert.equal(all.row[entries[0]], row);
+  assert.deepEqual(entries.map((e) => all.row[e]).sort((a, b) => a - b), [...whole.status.keys()].filter((i) => whole.status[i] === 0));
+  for (const e of entries) {
+    near(all.u[e], whole.u[all.row[e]], 1e-9, 'u');
+    near(all.v[e], whole.v[all.row[e]], 1e-9, 'v');
+    near(all.distance[e], whole.distance[all.row[e]], 1e-9, 'distance');
+    near(Math.hypot(all.cos[e], all.sin[e]), 1, 1e-9, 'transport');
+  }
+  const one = solver.localMaps({k: 7, sources: [row]});
+  assert.deepEqual([...one.begin], [0, 7]);
+  assert.deepEqual([...one.row], entries.slice(0, 7).map((e) => all.row[e]));
+  assert.throws(() => solver.localMaps({radius: -1}), libahm.InvalidArgument);
+});
+
 test('errors are of the class of the library, with its message', () => {
   const {positions, triangles} = square(5);
   const mesh = ahm.triangleMesh(positions, triangles);

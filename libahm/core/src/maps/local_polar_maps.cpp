@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
@@ -13,6 +12,7 @@
 #include "ahm/maps/local_maps.hpp"
 #include "ahm/maps/straight_line.hpp"
 #include "ahm/util/memory.hpp"
+#include "ahm/util/mutex.hpp"
 #include "ahm/util/parallel.hpp"
 #include "ahm/util/vec.hpp"
 #include "maps/affine_heat.hpp"
@@ -141,13 +141,13 @@ LocalMaps local_polar_maps(const TangentGraph& graph, std::span<const Source> so
     const auto n = static_cast<Offset>(sources.size());
     std::vector<Offset> indptr(sources.size() + 1, 0);
     std::vector<LocalEntries> chunks(static_cast<std::size_t>((n + chunk - 1) / chunk));
-    std::mutex mutex;
+    detail::Mutex mutex;
     std::vector<std::unique_ptr<Collector>> idle;
     Offset done = 0;
     detail::parallel_chunks(n, chunk, options.heat.threads, [&](Offset begin, Offset end) {
       std::unique_ptr<Collector> collector;
       {
-        std::scoped_lock lock(mutex);
+        const detail::Lock lock(mutex);
         if (!idle.empty()) collector = std::move(idle.back()), idle.pop_back();
       }
       if (!collector) collector = std::make_unique<Collector>(graph, sources, options, make_front());
@@ -159,7 +159,7 @@ LocalMaps local_polar_maps(const TangentGraph& graph, std::span<const Source> so
       }
       entries.vertices.shrink_to_fit(), entries.distances.shrink_to_fit();
       entries.logs.shrink_to_fit(), entries.transports.shrink_to_fit();
-      std::scoped_lock lock(mutex);
+      const detail::Lock lock(mutex);
       idle.push_back(std::move(collector));
       done += end - begin;
       options.heat.progress.step("solve", static_cast<double>(done) / static_cast<double>(n));

@@ -229,7 +229,8 @@ Geometry read(const Input& in) {
 
 std::optional<PointRecords> las_records(const Input& in) {
   const LasHeader header = parse_header(in);
-  PointRecords records{.begin = header.begin, .count = header.points, .stride = header.stride};
+  PointRecords records{
+      .begin = header.begin, .count = header.points, .stride = static_cast<std::size_t>(header.stride)};
   records.at = {0, 4, 8};
   records.type.fill(PlyType::int32);
   records.is_swapped = std::endian::native == std::endian::big;

@@ -239,7 +239,7 @@ class VtkReader {
                 " do not fit into the " + detail::counted(rest_.size(), "byte") +
                 " that follow; the file is cut short");
     const std::uint64_t all = tuples * width;
-    VtkArray array{name, width, type->whole, {}};
+    VtkArray array{name, static_cast<std::size_t>(width), type->whole, {}};
     if (binary_) {
       array.values = load_vtk_numbers(rest_.substr(0, all * type->size), *type, true);
       rest_.remove_prefix(all * type->size);

@@ -4,9 +4,10 @@
 namespace ahm::io {
 
 bool has_images() noexcept { return false; }
-Image read_image(const std::filesystem::path& path) {
-  throw IoError(path.string() + ": this build has no stb, which reads images (Debian: libstb-dev)");
+Image decode_image(std::string_view, const std::string& name) {
+  throw IoError(name + ": this build has no stb, which reads images (Debian: libstb-dev)");
 }
+Image read_image(const std::filesystem::path& path) { return decode_image({}, path.string()); }
 std::string png_bytes(const Image&) {
   throw IoError("this build has no stb, which writes images (Debian: libstb-dev)");
 }

@@ -70,19 +70,20 @@ void append(void* context, void* data, int size) {
 
 bool has_images() noexcept { return true; }
 
-Image read_image(const std::filesystem::path& path) {
-  const std::string bytes = bytes_of(path);
-  if (bytes.size() > INT_MAX) throw IoError(path.string() + ": larger than 2 GB; scale the image down");
+Image decode_image(std::string_view bytes, const std::string& name) {
+  if (bytes.size() > INT_MAX) throw IoError(name + ": larger than 2 GB; scale the image down");
   int width = 0, height = 0, channels = 0;
   const std::unique_ptr<stbi_uc, decltype(&stbi_image_free)> pixels(
       stbi_load_from_memory(reinterpret_cast<const stbi_uc*>(bytes.data()), static_cast<int>(bytes.size()), &width,
                             &height, &channels, 4),
       stbi_image_free);
-  if (!pixels) throw IoError(path.string() + ": not a readable PNG or JPEG image (" + stbi_failure_reason() + ")");
+  if (!pixels) throw IoError(name + ": not a readable PNG or JPEG image (" + stbi_failure_reason() + ")");
   Image image(width, height);
   std::copy_n(pixels.get(), image.rgba.size(), image.rgba.begin());
   return image;
 }
+
+Image read_image(const std::filesystem::path& path) { return decode_image(bytes_of(path), path.string()); }
 
 std::string png_bytes(const Image& image) {
   if (image.width < 1 || image.height < 1 ||

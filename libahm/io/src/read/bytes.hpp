@@ -41,8 +41,8 @@ class RegularFile {
  private:
   RegularFile() = default;
 
-  std::filesystem::path path_;  ///< the file, or the folder of a file without a name
-  int descriptor_ = -1;
+  std::filesystem::path path_;            ///< the file, or the folder of a file without a name
+  [[maybe_unused]] int descriptor_ = -1;  ///< not used by files in memory
   std::uint64_t size_ = 0;
 };
 

@@ -1,16 +1,10 @@
 #include "read/input.hpp"
 
-#include <fcntl.h>
-#include <sys/resource.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdlib>
-#include <fstream>
 #include <limits>
-#include <optional>
 #include <system_error>
 #include <utility>
 

@@ -1,3 +1,4 @@
+// With AHM_WITH_FILES=OFF, memory_files.cpp replaces this file.
 #include "ahm/io/atomic_file.hpp"
 
 #include <dirent.h>
@@ -20,6 +21,8 @@
 #include <system_error>
 #include <utility>
 
+#include "ahm/io/temporary_folder.hpp"
+#include "read/bytes.hpp"
 #include "read/input.hpp"
 #include "write/writers.hpp"
 
@@ -312,6 +315,16 @@ void FileSet::commit() {
   if (innermost == nullptr) return;
   for (AtomicFile& file : innermost->files_) file.name();
   innermost->files_.clear();
+}
+
+std::string written_bytes(const std::string& name, const std::function<void(const std::filesystem::path&)>& write) {
+  const TemporaryFolder folder("ahm-");
+  const std::filesystem::path path = folder.directory() / name;
+  write(path);
+  const RegularFile file(path);
+  std::string bytes(file.size(), '\0');
+  bytes.resize(file.read(0, bytes));
+  return bytes;
 }
 
 void remove_unfinished_files() noexcept {

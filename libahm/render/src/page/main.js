@@ -1,7 +1,7 @@
 "use strict";
-// Starts the page with embedded data, or with a server.
+// Starts the page with embedded data, or with a session.
 
-// Requests to the server. Only one map is requested at a time. A newer request replaces it. While the source is dragged, the newer request
+// Requests to the session. Only one map is requested at a time. A newer request replaces it. While the source is dragged, the newer request
 // waits instead, so that the picture follows.
 Ahm.Server = class {
   constructor() {
@@ -11,14 +11,14 @@ Ahm.Server = class {
   }
 
   async get(name) {
-    const answer = await fetch(name, { cache: "no-store" });
+    const answer = await Ahm.transport.fetch(name, { cache: "no-store" });
     if (!answer.ok) throw new Error(await this.reason(answer));
     return answer;
   }
 
   async post(name, request, signal) {
     const body = JSON.stringify(Object.assign({ client: this.client, number: ++this.sent }, request));
-    const answer = await fetch(name, { method: "POST", headers: { "Content-Type": "application/json" }, body: body, signal: signal });
+    const answer = await Ahm.transport.fetch(name, { method: "POST", headers: { "Content-Type": "application/json" }, body: body, signal: signal });
     if (!answer.ok) throw Object.assign(new Error(await this.reason(answer)), { status: answer.status });
     return answer;
   }
@@ -29,6 +29,12 @@ Ahm.Server = class {
     } catch (error) {
       return "the server returned status " + answer.status;
     }
+  }
+
+  // Ends the running requests, as far as the transport can.
+  cancel() {
+    if (this.abort) this.abort.abort();
+    if (Ahm.transport.cancel) Ahm.transport.cancel();
   }
 
   // Requests a map. Null if a newer request replaced this one.
@@ -56,6 +62,9 @@ Ahm.Viewer = class {
     this.picked = [];  // picked points of a path or a stroke
     this.source = null;  // source of the last map that starts at a point
     document.body.classList.toggle("still", !server);
+    Ahm.transport.progress = (stage, fraction) => {
+      if (this.busy) this.panel.say(stage + (fraction > 0 ? " " + Math.round(100 * fraction) + " %" : "") + " · Esc: cancel");
+    };
     this.listen();
   }
 
@@ -147,6 +156,7 @@ Ahm.Viewer = class {
   key(event) {
     if (event.ctrlKey || event.metaKey || event.altKey || /INPUT|SELECT|TEXTAREA/.test(event.target.tagName)) return;
     const step = 0.09, keys = {
+      Escape: () => this.cancel(),
       r: () => this.stage.reset(), f: () => this.panel.next_field(), d: () => this.panel.set_dark(!this.stage.is_dark),
       ArrowLeft: () => this.stage.turn(-step, 0), ArrowRight: () => this.stage.turn(step, 0),
       ArrowUp: () => this.stage.turn(0, step), ArrowDown: () => this.stage.turn(0, -step),
@@ -159,7 +169,13 @@ Ahm.Viewer = class {
     act();
   }
 
-  // The following methods require the server.
+  cancel() {
+    if (!this.busy || !this.server) return;
+    this.server.cancel();
+    this.panel.say("cancelled");
+  }
+
+  // The following methods require the session.
 
   settings() {
     const text = (id) => this.element(id).value.trim(), number = (id) => {
@@ -182,7 +198,8 @@ Ahm.Viewer = class {
     try {
       await work();
     } catch (error) {
-      if (error.status !== 409) this.panel.say(error.message, true);  // 409: a newer request replaced it
+      // 409: a newer request replaced it. AbortError: `cancel` ended it.
+      if (error.status !== 409 && error.name !== "AbortError") this.panel.say(error.message, true);
     } finally {
       this.busy--;
     }
@@ -344,6 +361,7 @@ Ahm.Viewer = class {
   async begin_live() {
     const info = await (await this.server.get("info")).json(), element = this.element;
     element("about").textContent = info.about;
+    document.title = element("heading").textContent = this.stage.surface.title;
     const options = (id, words, usual) => {
       for (const word of words) element(id).add(new Option(word, word, word === usual, word === usual));
     };

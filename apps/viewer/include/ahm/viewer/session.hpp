@@ -52,6 +52,8 @@ struct SessionOptions {
   /// Extensions that these functions support, without the dot, for each kind of result: map, stroke, path, coverage, decal.
   std::map<std::string, std::vector<std::string>> formats = {};
   std::function<std::string(const Error&)> worded = {};  ///< formats error messages; empty: what()
+  /// Receives the progress of requests: `Progress::report`. Empty: no reports.
+  std::function<void(std::string_view stage, double fraction)> progress = {};
 };
 
 /// The answer to a request.
@@ -65,7 +67,7 @@ struct Answer {
 std::string spec(const Surface& surface, const SurfacePoint& point);
 
 /// Answers requests on a surface. All members may be called from many threads at once. Maps are computed one at a time, each with all
-/// threads. The session keeps solvers for later requests.
+/// threads. The session keeps solvers for later requests. Builds without threads do not create the default solver in the background.
 ///
 /// Requests are JSON objects. A point is {"row": 42} or {"face": 7, "weights": [0.2, 0.3, 0.5]}. Requests for maps have the optional
 /// members "method", "variant", "t_coef", "radius" (null: none), "u_axis". Rows of a cloud that were removed before its graph was built

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -80,6 +81,11 @@ class FileSet {
   FileSet* outer_;
   std::vector<AtomicFile> files_;
 };
+
+/// The bytes that `write` writes to the path that it receives, a temporary file.
+/// @param name  name of the file, which selects the format
+/// @throws IoError; as `write`
+std::string written_bytes(const std::string& name, const std::function<void(const std::filesystem::path&)>& write);
 
 /// Whether the path cannot be replaced by renaming a file: it is a pipe, a device, or the process's own output
 /// (/dev/stdout, even if redirected to a file).

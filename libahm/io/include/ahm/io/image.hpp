@@ -9,6 +9,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "ahm/error.hpp"
 #include "ahm/image.hpp"
@@ -21,6 +22,11 @@ bool has_images() noexcept;
 /// Reads a PNG or JPEG file.
 /// @throws IoError with the file name and the reason
 Image read_image(const std::filesystem::path& path);
+
+/// Decodes a PNG or JPEG file in memory.
+/// @param name  name of the file, for messages
+/// @throws IoError with the name and the reason
+Image decode_image(std::string_view bytes, const std::string& name = "image");
 
 /// Encodes an image as a PNG file in memory.
 /// @throws InvalidArgument (the size does not match the number of pixels), IoError (this build has no stb)
