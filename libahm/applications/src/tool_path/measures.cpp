@@ -54,11 +54,11 @@ std::vector<PassPoint> points_of_passes(const ToolPath& path, double step) {
     double walked = 0;
     for (std::size_t k = pass.begin; k + 1 < pass.end; ++k) {
       const ToolPose &a = path.poses[k], &b = path.poses[k + 1];
-      const double length = distance(a.position, b.position) / path.spacing;
+      const double length = distance(a.contact, b.contact) / path.spacing;
       const auto parts = std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil(length / step)));
       for (std::size_t j = 0; j < parts; ++j) {
         const double t = (static_cast<double>(j) + 0.5) / static_cast<double>(parts);
-        result.push_back({(1 / path.spacing) * ((1 - t) * a.position + t * b.position),
+        result.push_back({(1 / path.spacing) * ((1 - t) * a.contact + t * b.contact),
                           {},
                           -1,
                           static_cast<Index>(p),
