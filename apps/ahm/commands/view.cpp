@@ -14,6 +14,7 @@
 #include "commands/line_finder.hpp"
 #include "commands/solve.hpp"
 #include "commands/subcommand.hpp"
+#include "commands/tool_path_files.hpp"
 #include "output/results.hpp"
 #include "output/texture_output.hpp"
 
@@ -65,7 +66,8 @@ viewer::SessionOptions session_options(const ViewOptions& options, const Input& 
   session.formats = {{"map", {"csv", "ply", "vtp", "jsonl", "pcd"}},
                      {"stroke", {"csv", "ply", "vtp", "jsonl", "pcd"}},
                      {"path", {"obj", "csv", "ply", "vtp", "jsonl"}},
-                     {"coverage", {"csv", "ply", "vtp", "jsonl"}}};
+                     {"coverage", {"csv", "ply", "vtp", "jsonl"}},
+                     {"whole", {"csv", "ply", "vtp", "jsonl", "obj", "json", "yaml"}}};
   if (io::has_images()) session.formats["decal"] = {"glb", "ply"};
   session.worded = [](const Error& error) { return worded(error); };
   session.write = [&input, &normals](const std::filesystem::path& file, const RowLogMap& rows,
@@ -81,6 +83,11 @@ viewer::SessionOptions session_options(const ViewOptions& options, const Input& 
   };
   session.write_coverage = [](const std::filesystem::path& file, const CoveragePath& path) {
     write_coverage(file.string(), "", path);
+  };
+  session.write_whole = [](const std::filesystem::path& file, const ToolPath& path) {
+    OutputOptions output;
+    output.output = file.string();
+    write_path_file(output, {}, {.spacing = path.spacing}, path);
   };
   session.write_decal = [&input](const std::filesystem::path& file, const InverseMap& inverse,
                                  const DecalOptions& decal, const Image& image) {
