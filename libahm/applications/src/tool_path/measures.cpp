@@ -126,10 +126,11 @@ ToolPathMeasures tool_path_measures(const Surface& surface, const ToolPath& path
   for (std::size_t f = 0; f < domain.mesh.size(); ++f)
     spread.in_face(static_cast<Index>(f), domain.mesh.area(static_cast<Index>(f)),
                    [&](const MeshPoint& point) { options.targets.push_back(point); });
+  const FaceLocator locator(domain.mesh);
   std::vector<PassPoint> points = points_of_passes(path, step);
   std::vector<MeshPoint> sources;
   for (PassPoint& point : points)
-    if (const auto on_mesh = domain.locator.nearest(point.position)) {
+    if (const auto on_mesh = locator.nearest(point.position)) {
       sources.push_back(*on_mesh);
       point.normal = domain.mesh.area_normal(on_mesh->face);
       point.component = domain.surface.component(domain.mesh.faces[to_size(on_mesh->face)][0]);

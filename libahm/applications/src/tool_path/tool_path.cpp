@@ -62,7 +62,7 @@ void keep_disc(const Surface& surface, const ToolPathRegion::Disc& disc, double 
                std::vector<bool>& kept) {
   check_positive("the radius of the region", disc.radius);
   const PathDomain domain(mesh);
-  const auto center = domain.locator.nearest((1 / spacing) * surface.position(disc.center));
+  const auto center = FaceLocator(domain.mesh).nearest((1 / spacing) * surface.position(disc.center));
   std::fill(kept.begin(), kept.end(), false);
   if (!center) return;
   exact::ExactOptions options;
@@ -148,9 +148,10 @@ std::vector<MeshCurve> longest_loops(const PathDomain& domain) {
 
 /// A curve in space, moved to the mesh.
 MeshCurve on_mesh(const PathDomain& domain, std::span<const Vec3> points, bool closed, double spacing) {
+  const FaceLocator locator(domain.mesh);
   std::vector<MeshPoint> found;
   for (const Vec3& p : points)
-    if (const auto point = domain.locator.nearest((1 / spacing) * p)) found.push_back(*point);
+    if (const auto point = locator.nearest((1 / spacing) * p)) found.push_back(*point);
   if (found.size() < 2)
     throw InvalidArgument("seed_off_surface", "the seed curve does not lie in the region",
                           "choose a curve on the part of the surface that is covered");
