@@ -86,7 +86,7 @@ class ToolPath(NamedTuple):
     #: the pass length), pass_length, link_length, surface_links, lifted_links, missing_links, uncovered_components
     measures: Dict[str, float]
 
-    def _poses(self) -> tuple:
+    def _poses(self) -> Tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, int]:
         kinds = np.argmax(self.kind[:, None] == _KINDS, axis=1).astype(np.uint8)
         return (self.position, self.axis, self.quaternion, self.pass_number, kinds, self.arclength,
                 int(self.measures["missing_links"]))
@@ -100,6 +100,10 @@ class ToolPath(NamedTuple):
         units : "mm" or "inch". Numbers are not converted.
         blend : largest deviation by which the machine may blend corners (G64 P), world units; 0: none (G61).
 
+        >>> import ahm
+        >>> ahm.tool_path(ahm.shapes.plane(9), 2, facing=[0, 0, 1]).gcode(800).splitlines()[:3]
+        ['(tool path by libahm)', 'G21 G17 G40 G80 G90 G94', 'G61']
+
         Raises ValueError for missing links, and with 3 axes for passes whose tool axis does not point up.
         """
         inches = arguments.choice(units, "units", ("mm", "inch")) == "inch"
@@ -112,6 +116,12 @@ class ToolPath(NamedTuple):
         message : "PoseArray" (geometry_msgs) or "Path" (nav_msgs).
         frame : frame of the coordinates.
         feed : speed for the time stamps of a Path, world units per minute; None: all stamps are 0.
+
+        >>> import ahm
+        >>> print(ahm.tool_path(ahm.shapes.plane(9), 2).ros_yaml(frame="part").splitlines()[0])
+        header: {seq: 0, stamp: {secs: 0, nsecs: 0}, frame_id: "part"}
+
+        Raises ValueError naming the argument.
         """
         stamped = arguments.choice(message, "message", ("PoseArray", "Path")) == "Path"
         return _core.ros_yaml(*self._poses(), stamped, frame, 0.0 if feed is None else arguments.real(feed, "feed", positive=True))
@@ -184,8 +194,8 @@ def tool_path(surface: SurfaceLike, spacing: float, *, seed: str = "auto", plane
             raise ValueError(f"rows: expected an array of bool, one per row, got {arguments.describe(rows, given)}")
         mask = np.ascontiguousarray(given, dtype=np.uint8)
     toward = arguments.vector(facing, "facing")
-    enclosures = [np.empty((0, 3)) if curve is None else arguments.floats(curve, name, (None, 3), finite=True)
-                  for name, curve in (("inside", inside), ("outside", outside))]
+    within, without = (np.empty((0, 3)) if curve is None else arguments.floats(curve, name, (None, 3), finite=True)
+                       for name, curve in (("inside", inside), ("outside", outside)))
     lengths = {"chord_error": chord_error, "tool_radius": tool_radius, "clearance": clearance, "max_link": max_link,
                "offset": offset}
     options = checked(step=step, threads=threads)
@@ -197,7 +207,7 @@ def tool_path(surface: SurfaceLike, spacing: float, *, seed: str = "auto", plane
     with reporting(progress) as report:
         position, contact, axis, travel, quaternion, number, motion, arclength, passes, measures = _core.tool_path(
             on._body, apart, kind, points, arguments.flag(closed, "closed"), mask,
-            np.empty(0) if toward is None else toward, arguments.real(max_angle, "max_angle"), *enclosures, options, report)
+            np.empty(0) if toward is None else toward, arguments.real(max_angle, "max_angle"), within, without, options, report)
     made = [ToolPass(begin, end, is_closed, _ORIGINS[origin], distance, length)
             for begin, end, is_closed, origin, distance, length in passes]
     return ToolPath(position, contact, axis, travel, quaternion, number, _KINDS[motion], arclength, made, measures)
