@@ -101,7 +101,7 @@ class ToolPath(NamedTuple):
         blend : largest deviation by which the machine may blend corners (G64 P), world units; 0: none (G61).
 
         >>> import ahm
-        >>> ahm.tool_path(ahm.shapes.plane(9), 2, facing=[0, 0, 1]).gcode(800).splitlines()[:3]
+        >>> ahm.tool_path(ahm.shapes.plane(9, 9), 2, facing=[0, 0, 1]).gcode(800).splitlines()[:3]
         ['(tool path by libahm)', 'G21 G17 G40 G80 G90 G94', 'G61']
 
         Raises ValueError for missing links, and with 3 axes for passes whose tool axis does not point up.
@@ -118,7 +118,7 @@ class ToolPath(NamedTuple):
         feed : speed for the time stamps of a Path, world units per minute; None: all stamps are 0.
 
         >>> import ahm
-        >>> print(ahm.tool_path(ahm.shapes.plane(9), 2).ros_yaml(frame="part").splitlines()[0])
+        >>> print(ahm.tool_path(ahm.shapes.plane(9, 9), 2).ros_yaml(frame="part").splitlines()[0])
         header: {seq: 0, stamp: {secs: 0, nsecs: 0}, frame_id: "part"}
 
         Raises ValueError naming the argument.
