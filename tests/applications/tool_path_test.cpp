@@ -251,9 +251,11 @@ TEST(ToolPath, OffsetIsTheCenterOfABall) {
       EXPECT_GE(surface.closest_point(p.position).distance, 0.99 * offset);
       if (p.kind == ToolMotion::pass) EXPECT_LE(surface.closest_point(p.position).distance, 1.001 * offset);
     }
-    const ToolPathMeasures measures = tool_path_measures(surface, path);
+    const ToolPathMeasures measures = tool_path_measures(surface, path),
+                           without = tool_path_measures(surface, tool_path(surface, {.spacing = 0.4, .seed = seed}));
     EXPECT_GE(measures.covered, 0.99);
     EXPECT_LE(measures.largest_gap, 1.25);
+    EXPECT_NEAR(measures.double_covered, without.double_covered, 0.005);
     return path;
   };
   measure(surface_of(box({4, 3, 2})), AutomaticSeed{});

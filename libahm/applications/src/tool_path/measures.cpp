@@ -51,6 +51,7 @@ std::vector<PassPoint> points_of_passes(const ToolPath& path, double step) {
   std::vector<PassPoint> result;
   for (std::size_t p = 0; p < path.passes.size(); ++p) {
     const ToolPass& pass = path.passes[p];
+    const std::size_t first = result.size();
     double walked = 0;
     for (std::size_t k = pass.begin; k + 1 < pass.end; ++k) {
       const ToolPose &a = path.poses[k], &b = path.poses[k + 1];
@@ -63,11 +64,12 @@ std::vector<PassPoint> points_of_passes(const ToolPath& path, double step) {
                           -1,
                           static_cast<Index>(p),
                           walked + t * length,
-                          pass.length / path.spacing,
+                          0,
                           pass.closed});
       }
       walked += length;
     }
+    for (std::size_t k = first; k < result.size(); ++k) result[k].pass_length = walked;
   }
   return result;
 }
