@@ -28,6 +28,7 @@ tests=(
   libpetsc-real-dev libopenmpi-dev openmpi-bin                # ahm-mpi: maps on many machines
   chromium chromium-driver python3-selenium                   # the viewer in a browser
   pybind11-dev python3-pybind11 python3-dev python3-numpy python3-scipy python3-pytest mypy python3-torch  # the Python package and its tests
+  python3-yaml python3-geometry-msgs python3-nav-msgs         # messages of ROS
 )
 checks=("${tests[@]}" clang libclang-rt-14-dev clang-format clang-tidy)
 debian=("${tests[@]}" dpkg-dev pkg-config file debootstrap)

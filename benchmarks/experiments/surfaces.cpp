@@ -31,13 +31,12 @@ MeshFile mesh_file(const std::filesystem::path& path) {
   return {path, unpacked.stem().string(), unpacked.extension().string()};
 }
 
-/// Mesh files in `settings.meshes` and its subfolders, sorted by size.
-std::vector<MeshFile> mesh_files(const Settings& settings) {
+/// Files of these types in `settings.meshes` and its subfolders, sorted by size.
+std::vector<MeshFile> files_of_types(const Settings& settings, const std::vector<std::string>& types) {
   std::vector<std::pair<std::uintmax_t, std::filesystem::path>> files;
   if (!settings.meshes.empty())
     for (const auto& entry : std::filesystem::recursive_directory_iterator(settings.meshes))
-      if (const std::string type = mesh_file(entry.path()).type;
-          type == ".ply" || type == ".off" || type == ".obj" || type == ".stl")
+      if (std::ranges::find(types, mesh_file(entry.path()).type) != types.end())
         files.emplace_back(entry.file_size(), entry.path());
   std::sort(files.begin(), files.end());
   std::vector<MeshFile> found;
@@ -78,7 +77,18 @@ UserSurfaces user_surfaces(const Settings& settings, Index largest) {
       for (std::size_t f = 0; f < file.face_count(); ++f) mesh.add({file.face(f).begin(), file.face(f).end()});
     }
   };
-  for (const MeshFile& file : mesh_files(settings)) run_or_leave_out(file.path.string(), [&] { add(file); });
+  for (const MeshFile& file : files_of_types(settings, {".ply", ".off", ".obj", ".stl"}))
+    run_or_leave_out(file.path.string(), [&] { add(file); });
+  return found;
+}
+
+std::vector<NamedCloud> user_clouds(const Settings& settings, Index largest) {
+  std::vector<NamedCloud> found;
+  for (const MeshFile& input : files_of_types(settings, {".xyz"}))
+    run_or_leave_out(input.path.string(), [&] {
+      std::vector<Vec3> points = io::read(input.path).points;
+      if (static_cast<Index>(points.size()) <= largest) found.push_back({std::move(points), input.name});
+    });
   return found;
 }
 

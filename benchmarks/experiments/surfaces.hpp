@@ -22,6 +22,10 @@ struct NamedMesh : Mesh {
 struct NamedPolygons : test::Polygons {
   std::string name;
 };
+struct NamedCloud {
+  std::vector<Vec3> positions;
+  std::string name;
+};
 
 /// Runs `work`. If it throws an `Error`, reports `name` on the error stream as left out.
 void run_or_leave_out(const std::string& name, const std::function<void()>& work);
@@ -34,6 +38,8 @@ struct UserSurfaces {
 /// The meshes in `settings.meshes` and its subfolders with at most `largest` vertices, sorted by file size, also those
 /// compressed with gzip. Files that cannot be read are reported on the error stream and left out.
 UserSurfaces user_surfaces(const Settings& settings, Index largest);
+/// The .xyz clouds there, also those compressed with gzip.
+std::vector<NamedCloud> user_clouds(const Settings& settings, Index largest);
 /// The triangle meshes only. Meshes of other polygons are reported, too.
 std::vector<NamedMesh> user_meshes(const Settings& settings, Index largest = 1'000'000'000);
 

@@ -7,7 +7,6 @@
 
 #include "ahm/applications/tool_path.hpp"
 #include "ahm/conformance/parts.hpp"
-#include "ahm/io/read.hpp"
 #include "ahm/pointcloud/point_cloud_surface.hpp"
 #include "ahm/polymesh/polygon_mesh_surface.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
@@ -66,16 +65,13 @@ void measure_user_parts(const Settings& settings, Table& table) {
               polymesh::PolygonMeshSurface::build(mesh.positions, mesh.begin, mesh.corners));
         },
         settings, table);
-  if (settings.meshes.empty()) return;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(settings.meshes))
-    if (entry.path().extension() == ".xyz")
-      try_part(
-          entry.path().stem().string(),
-          [&]() -> SurfacePtr {
-            return std::make_unique<pointcloud::PointCloudSurface>(
-                pointcloud::PointCloudSurface::build(io::read(entry.path()).points));
-          },
-          settings, table);
+  for (const NamedCloud& cloud : user_clouds(settings, largest_part))
+    try_part(
+        cloud.name,
+        [&]() -> SurfacePtr {
+          return std::make_unique<pointcloud::PointCloudSurface>(pointcloud::PointCloudSurface::build(cloud.positions));
+        },
+        settings, table);
 }
 
 }  // namespace

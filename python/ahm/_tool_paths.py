@@ -74,7 +74,8 @@ class ToolPath(NamedTuple):
     """A path of a tool over a whole surface: k poses in order of travel. Returned by `tool_path`."""
 
     position: np.ndarray  #: (k, 3) positions, world units
-    axis: np.ndarray  #: (k, 3) unit vectors away from the surface: mean normals within the tool radius
+    contact: np.ndarray  #: (k, 3) points of the surface where the poses are; equal to `position` without an offset
+    axis: np.ndarray  #: (k, 3) unit vectors away from the surface: mean normals within the tool radius, with lead and tilt
     travel: np.ndarray  #: (k, 3) directions of travel, unit vectors perpendicular to the axes
     quaternion: np.ndarray  #: (k, 4) rotations (w, x, y, z) that take z to the axis and x to the travel
     pass_number: np.ndarray  #: (k,) int32 number of the pass; on links that of the next pass
@@ -84,6 +85,46 @@ class ToolPath(NamedTuple):
     #: area, covered (share of the area within 0.6 spacings of a pass), largest_gap (in spacings), double_covered (share of
     #: the pass length), pass_length, link_length, surface_links, lifted_links, missing_links, uncovered_components
     measures: Dict[str, float]
+
+    def _poses(self) -> Tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, int]:
+        kinds = np.argmax(self.kind[:, None] == _KINDS, axis=1).astype(np.uint8)
+        return (self.position, self.axis, self.quaternion, self.pass_number, kinds, self.arclength,
+                int(self.measures["missing_links"]))
+
+    def gcode(self, feed: float, *, axes: int = 3, units: str = "mm", blend: float = 0) -> str:
+        """The path as a program in RS-274/NGC, the dialect of LinuxCNC. Lifted motions are rapid (G0), all others G1.
+
+        feed : speed, world units per minute, > 0.
+        axes : 3, the tool along z; or 5, also A and C in degrees such that the tool axis is
+            (sin A sin C, sin A cos C, cos A), as in LinuxCNC's xyzac-trt, with the tool center point at X, Y, Z.
+        units : "mm" or "inch". Numbers are not converted.
+        blend : largest deviation by which the machine may blend corners (G64 P), world units; 0: none (G61).
+
+        >>> import ahm
+        >>> ahm.tool_path(ahm.shapes.plane(9, 9), 2, facing=[0, 0, 1]).gcode(800).splitlines()[:3]
+        ['(tool path by libahm)', 'G21 G17 G40 G80 G90 G94', 'G61']
+
+        Raises ValueError for missing links, and with 3 axes for passes whose tool axis does not point up.
+        """
+        inches = arguments.choice(units, "units", ("mm", "inch")) == "inch"
+        return _core.gcode(*self._poses(), arguments.real(feed, "feed", positive=True), arguments.integer(axes, "axes"),
+                           inches, arguments.real(blend, "blend"))
+
+    def ros_yaml(self, message: str = "PoseArray", *, frame: str = "map", feed: Optional[float] = None) -> str:
+        """The path as a message of ROS 1, in YAML as `rostopic pub -f` reads it. ROS expects meters.
+
+        message : "PoseArray" (geometry_msgs) or "Path" (nav_msgs).
+        frame : frame of the coordinates.
+        feed : speed for the time stamps of a Path, world units per minute; None: all stamps are 0.
+
+        >>> import ahm
+        >>> print(ahm.tool_path(ahm.shapes.plane(9, 9), 2).ros_yaml(frame="part").splitlines()[0])
+        header: {seq: 0, stamp: {secs: 0, nsecs: 0}, frame_id: "part"}
+
+        Raises ValueError naming the argument.
+        """
+        stamped = arguments.choice(message, "message", ("PoseArray", "Path")) == "Path"
+        return _core.ros_yaml(*self._poses(), stamped, frame, 0.0 if feed is None else arguments.real(feed, "feed", positive=True))
 
     def __repr__(self) -> str:
         return (f"<ahm.ToolPath: {len(self.passes)} passes, {arguments.counted(len(self.kind), 'pose')}, "
@@ -106,9 +147,11 @@ def _seed(seed: str, plane: Optional[Tuple[Vector, Vector]], curve: Optional[Mat
 
 def tool_path(surface: SurfaceLike, spacing: float, *, seed: str = "auto", plane: Optional[Tuple[Vector, Vector]] = None,
               curve: Optional[Matrix] = None, closed: bool = False, rows: Union[Array, Sequence[bool], None] = None,
-              facing: Optional[Vector] = None, max_angle: float = math.pi / 4,
+              facing: Optional[Vector] = None, max_angle: float = math.pi / 4, inside: Optional[Matrix] = None,
+              outside: Optional[Matrix] = None,
               step: Optional[float] = None, chord_error: Optional[float] = None, tool_radius: Optional[float] = None,
               clearance: Optional[float] = None, max_link: Optional[float] = None, one_way: bool = False,
+              lead: float = 0, tilt: float = 0, offset: Optional[float] = None,
               threads: Optional[int] = None, progress: Progress = None) -> ToolPath:
     """Covers a whole surface, closed or not, with passes at equal geodesic distance, joined by links.
 
@@ -120,12 +163,17 @@ def tool_path(surface: SurfaceLike, spacing: float, *, seed: str = "auto", plane
     curve : (n, 3) positions on the surface: passes parallel to the curve through them; `closed` joins its ends.
     rows : (n,) bool, cover only triangles whose corners are all True.
     facing, max_angle : cover only triangles whose normal is within `max_angle` (radians) of the vector `facing`.
+    inside, outside : (n, 3) positions on the surface. Cover only one side of the closed curve through them. The largest part
+        into which it divides the surface is the outside, the others are the inside.
     step : longest distance between poses; None: a quarter of the spacing.
     chord_error : largest distance of a pass from the chord between poses; None: a 200th of the spacing.
     tool_radius : the tool axis is the mean normal within this radius; None: half of the spacing.
     clearance : height of lifted links over the surface; None: the spacing.
     max_link : longest link on the surface, longer ones are lifted; None: three spacings.
     one_way : all passes run in the direction of the seed.
+    lead, tilt : angles by which the tool axis leans toward the travel, and to its left, radians, within (-pi/2, pi/2).
+    offset : distance of the poses from the surface, as the center of a ball of this radius; loops in concave places are
+        removed.
     threads : 0 or None: one per core. The result does not depend on it.
     progress : callable as in `log_map`.
 
@@ -146,16 +194,20 @@ def tool_path(surface: SurfaceLike, spacing: float, *, seed: str = "auto", plane
             raise ValueError(f"rows: expected an array of bool, one per row, got {arguments.describe(rows, given)}")
         mask = np.ascontiguousarray(given, dtype=np.uint8)
     toward = arguments.vector(facing, "facing")
-    lengths = {"chord_error": chord_error, "tool_radius": tool_radius, "clearance": clearance, "max_link": max_link}
+    within, without = (np.empty((0, 3)) if curve is None else arguments.floats(curve, name, (None, 3), finite=True)
+                       for name, curve in (("inside", inside), ("outside", outside)))
+    lengths = {"chord_error": chord_error, "tool_radius": tool_radius, "clearance": clearance, "max_link": max_link,
+               "offset": offset}
     options = checked(step=step, threads=threads)
     options["one_way"] = arguments.flag(one_way, "one_way")
+    options["lead"], options["tilt"] = arguments.real(lead, "lead"), arguments.real(tilt, "tilt")
     for name, length in lengths.items():
         if length is not None:
             options[name] = arguments.real(length, name, positive=True)
     with reporting(progress) as report:
-        position, axis, travel, quaternion, number, motion, arclength, passes, measures = _core.tool_path(
+        position, contact, axis, travel, quaternion, number, motion, arclength, passes, measures = _core.tool_path(
             on._body, apart, kind, points, arguments.flag(closed, "closed"), mask,
-            np.empty(0) if toward is None else toward, arguments.real(max_angle, "max_angle"), options, report)
+            np.empty(0) if toward is None else toward, arguments.real(max_angle, "max_angle"), within, without, options, report)
     made = [ToolPass(begin, end, is_closed, _ORIGINS[origin], distance, length)
             for begin, end, is_closed, origin, distance, length in passes]
-    return ToolPath(position, axis, travel, quaternion, number, _KINDS[motion], arclength, made, measures)
+    return ToolPath(position, contact, axis, travel, quaternion, number, _KINDS[motion], arclength, made, measures)

@@ -1,6 +1,7 @@
 // Isolines and tool paths over whole surfaces.
 #include "ahm/applications/isolines.hpp"
 #include "ahm/applications/tool_path.hpp"
+#include "ahm/applications/tool_path_text.hpp"
 #include "ahm/error.hpp"
 #include "compute.hpp"
 #include "map.hpp"
@@ -40,20 +41,27 @@ ToolPathSeed seed_of(const std::string& kind, const Doubles& numbers_of_seed, bo
 /// @param points  (n, 3): point and normal of the plane, points of the curve
 /// @param mask    empty, or one byte per row
 /// @param facing  empty, or a direction
-/// @return position, axis, travel, quaternion, pass, kind, arclength of the poses; begin, end, closed, kind, distance, length of
-/// the passes; measures and links
+/// @param inside, outside  empty, or the points of closed curves
+/// @return position, contact, axis, travel, quaternion, pass, kind, arclength of the poses; begin, end, closed, kind, distance,
+/// length of the passes; measures and links
 py::tuple tool_path_of(const BodyPtr& body, double spacing, const std::string& seed, const Doubles& points, bool closed,
-                       const Bytes& mask, const Doubles& facing, double max_angle, const py::dict& options,
-                       const py::object& report) {
+                       const Bytes& mask, const Doubles& facing, double max_angle, const Doubles& inside,
+                       const Doubles& outside, const py::dict& options, const py::object& report) {
   ToolPathOptions o{.spacing = spacing, .seed = seed_of(seed, points, closed)};
   for (const std::uint8_t row : numbers(mask)) o.region.rows.push_back(row != 0);
   if (const std::span<const double> d = numbers(facing); !d.empty())
     o.region.facing = ToolPathRegion::Facing{{d[0], d[1], d[2]}, max_angle};
+  for (const bool is_outside : {false, true})
+    if (const std::span<const Vec3> curve = vectors(is_outside ? outside : inside); !curve.empty())
+      o.region.enclosures.push_back({{curve.begin(), curve.end()}, is_outside});
   read(options, "step", o.step);
   read(options, "chord_error", o.chord_error);
   read(options, "tool_radius", o.tool_radius);
   read(options, "clearance", o.clearance);
   read(options, "max_link", o.max_link);
+  read(options, "lead", o.lead);
+  read(options, "tilt", o.tilt);
+  read(options, "offset", o.offset);
   read(options, "one_way", o.one_way);
   read(options, "threads", o.threads);
   auto [path, measures] = compute(report, py::none(), [=](const Progress& progress) mutable {
@@ -63,13 +71,14 @@ py::tuple tool_path_of(const BodyPtr& body, double spacing, const std::string& s
     const ToolPathMeasures measured = tool_path_measures(surface, made, o.region);
     return std::pair(std::move(made), measured);
   });
-  std::vector<Vec3> position, axis, travel;
+  std::vector<Vec3> position, contact, axis, travel;
   std::vector<std::array<double, 4>> quaternion;
   std::vector<Index> pass;
   std::vector<std::uint8_t> kind;
   std::vector<double> arclength;
   for (const ToolPose& pose : path.poses) {
-    position.push_back(pose.position), axis.push_back(pose.axis), travel.push_back(pose.travel);
+    position.push_back(pose.position), contact.push_back(pose.contact), axis.push_back(pose.axis),
+        travel.push_back(pose.travel);
     quaternion.push_back(pose.quaternion), pass.push_back(pose.pass), arclength.push_back(pose.arclength);
     kind.push_back(static_cast<std::uint8_t>(pose.kind));
   }
@@ -79,7 +88,7 @@ py::tuple tool_path_of(const BodyPtr& body, double spacing, const std::string& s
     passes.append(py::make_tuple(p.begin, p.end, p.closed, static_cast<int>(p.origin), p.distance, p.length));
   const py::ssize_t n = length(quaternion);
   return py::make_tuple(
-      owned(std::move(position)), owned(std::move(axis)), owned(std::move(travel)),
+      owned(std::move(position)), owned(std::move(contact)), owned(std::move(axis)), owned(std::move(travel)),
       owned<std::array<double, 4>, double>(std::move(quaternion), {n, 4}), owned(std::move(pass)),
       owned(std::move(kind)), owned(std::move(arclength)), passes,
       py::dict("area"_a = measures.area, "covered"_a = measures.covered, "largest_gap"_a = measures.largest_gap,
@@ -89,11 +98,48 @@ py::tuple tool_path_of(const BodyPtr& body, double spacing, const std::string& s
                "uncovered_components"_a = path.uncovered_components));
 }
 
+/// The arrays of a path as poses.
+ToolPath path_of(const Doubles& positions, const Doubles& axes, const Doubles& quaternions, const Indices& passes,
+                 const Bytes& kinds, const Doubles& arclengths, Index missing_links) {
+  const std::span<const Vec3> position = vectors(positions), axis = vectors(axes);
+  const std::span<const double> q = numbers(quaternions), arclength = numbers(arclengths);
+  const std::span<const Index> pass = numbers(passes);
+  const std::span<const std::uint8_t> kind = numbers(kinds);
+  ToolPath path;
+  path.missing_links = missing_links;
+  for (std::size_t k = 0; k < position.size(); ++k)
+    path.poses.push_back({.position = position[k],
+                          .contact = {},
+                          .axis = axis[k],
+                          .travel = {},
+                          .quaternion = {q[4 * k], q[4 * k + 1], q[4 * k + 2], q[4 * k + 3]},
+                          .pass = pass[k],
+                          .kind = static_cast<ToolMotion>(kind[k]),
+                          .arclength = arclength[k]});
+  return path;
+}
+
+std::string gcode_of(const Doubles& positions, const Doubles& axes, const Doubles& quaternions, const Indices& passes,
+                     const Bytes& kinds, const Doubles& arclengths, Index missing_links, double feed, int machine_axes,
+                     bool inches, double blend) {
+  return gcode(path_of(positions, axes, quaternions, passes, kinds, arclengths, missing_links),
+               {.feed = feed, .axes = machine_axes, .inches = inches, .blend = blend});
+}
+
+std::string ros_yaml_of(const Doubles& positions, const Doubles& axes, const Doubles& quaternions,
+                        const Indices& passes, const Bytes& kinds, const Doubles& arclengths, Index missing_links,
+                        bool stamped, const std::string& frame, double feed) {
+  return ros_yaml(path_of(positions, axes, quaternions, passes, kinds, arclengths, missing_links),
+                  {.message = stamped ? RosMessage::path : RosMessage::pose_array, .frame = frame, .feed = feed});
+}
+
 }  // namespace
 
 void add_tool_paths(py::module_& module) {
   module.def("isolines", &isolines_of);
   module.def("tool_path", &tool_path_of);
+  module.def("gcode", &gcode_of);
+  module.def("ros_yaml", &ros_yaml_of);
 }
 
 }  // namespace ahm::python

@@ -242,9 +242,41 @@ def test_a_tool_path_covers_a_box_and_its_top():
     on_passes = np.concatenate([np.arange(p.begin, p.end) for p in top.passes])
     assert np.allclose(top.position[on_passes, 2], 2) and (np.abs(top.travel[on_passes, 0]) > 0.99).all()
     assert top.measures["area"] == pytest.approx(12)
+    ring = [[1, 1, 2], [3, 1, 2], [3, 2, 2], [1, 2, 2]]
+    for side, area in (("inside", 2), ("outside", 50)):
+        assert ahm.tool_path(box, 0.3, **{side: ring}).measures["area"] == pytest.approx(area, abs=0.01)
     for arguments, message in (((5.1e3,), "larger than the region"), ((-1,), "spacing"), ((1, "top"), "seed")):
         with pytest.raises(ValueError, match=message):
             ahm.tool_path(box, arguments[0], **({"seed": arguments[1]} if len(arguments) > 1 else {}))
+
+
+def test_tool_paths_are_programs_and_messages():
+    path = ahm.tool_path(ahm.shapes.sphere(2), 0.5, lead=0.1, offset=0.2)
+    assert np.linalg.norm(path.position - path.contact, axis=1).max() > 0.19
+    program = path.gcode(800, axes=5).splitlines()
+    assert program[-1] == "M2" and sum("F800" in line for line in program) == 1
+    with pytest.raises(ValueError, match="faces sideways or down"):
+        path.gcode(800)
+    yaml = pytest.importorskip("yaml")
+    for message in ("PoseArray", "Path"):
+        documents = list(yaml.safe_load_all(path.ros_yaml(message, frame='the "part"', feed=60)))
+        assert len(documents) == 1 and documents[0]["header"]["frame_id"] == 'the "part"'
+        poses = [p["pose"] if message == "Path" else p for p in documents[0]["poses"]]
+        np.testing.assert_array_equal([[p["position"][c] for c in "xyz"] for p in poses], path.position)
+        np.testing.assert_array_equal([[p["orientation"][c] for c in "wxyz"] for p in poses], path.quaternion)
+        if message == "Path":
+            stamps = [p["header"]["stamp"]["secs"] + 1e-9 * p["header"]["stamp"]["nsecs"] for p in documents[0]["poses"]]
+            np.testing.assert_allclose(stamps, path.arclength, atol=1e-9)
+        try:  # Debian: python3-genpy python3-geometry-msgs python3-nav-msgs
+            import genpy
+            from geometry_msgs.msg import PoseArray
+            from nav_msgs.msg import Path
+        except ImportError:
+            continue
+        filled = {"PoseArray": PoseArray, "Path": Path}[message]()
+        genpy.message.fill_message_args(filled, documents)  # as `rostopic pub -f`
+        filled._check_types()
+        assert len(filled.poses) == len(path.position)
 
 
 def test_coverage_lines_are_equally_spaced_on_the_plane(flat_surfaces):

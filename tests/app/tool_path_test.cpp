@@ -96,12 +96,17 @@ TEST_F(Coverage, AndInverseMapAreTheSameOnTheSurroundings) {
 // The whole sphere of points, and a disc of it: poses, kinds, and the report.
 TEST_F(Coverage, CoversAWholePart) {
   write("sphere.xyz", xyz(sphere(3000)));
-  for (const std::string region : {"", " --source 0 --radius 1"}) {
+  write("circle.txt", "0.8,0,0.6\n0.5,0.7,0.5\n0,0.8,0.6\n-0.8,0,0.6\n0,-0.8,0.6\n");
+  for (const std::string region : {"", " --source 0 --radius 1", " --inside circle.txt"}) {
     const auto json = summary("coverage sphere.xyz --whole --spacing 0.2 -o path.csv" + region);
     EXPECT_GT(number(json, "/covered"), 0.99);
     EXPECT_LT(number(json, "/largest_gap"), 1.25);
     EXPECT_LT(number(json, "/double_covered"), 0.03);
-    EXPECT_NEAR(number(json, "/area"), region.empty() ? 4 * pi : 2 * pi * (1 - std::cos(1)), 0.3);
+    EXPECT_NEAR(number(json, "/area"),
+                region.empty()          ? 4 * pi
+                : region.ends_with("1") ? 2 * pi * (1 - std::cos(1))
+                                        : 2,
+                0.3);
     const auto rows = read_csv("path.csv");
     expect_values(json, {{"/points", rows.size()}, {"/links/missing", 0}});
     std::size_t on_passes = 0;
@@ -115,6 +120,34 @@ TEST_F(Coverage, CoversAWholePart) {
   }
 }
 
+TEST_F(Coverage, OfAWholePartIsWrittenForMachinesAndRobots) {
+  write("box.obj", obj({{0, 0, 0}, {4, 0, 0}, {4, 3, 0}, {0, 3, 0}, {0, 0, 2}, {4, 0, 2}, {4, 3, 2}, {0, 3, 2}},
+                       {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}}));
+  const std::string command = "coverage box.obj --whole --spacing 0.5 --offset 0.25 --lag 10 ";
+  run_ok(command + "--feed 30 -o path.csv");
+  const auto rows = read_csv("path.csv");
+  for (const Row& p : rows) EXPECT_NEAR(p["time"], 2 * p["arclength"], 1e-9);
+  for (const std::string name : {"path.obj", "path.json", "path.yaml"}) run_ok(command + "-o " + name);
+  run_ok(command + "--feed 800 --axes 5 -o path.ngc");
+  EXPECT_TRUE(has(read_text("path.ngc"), "G21 ", "G64 P0.0025", " F800"));
+  EXPECT_TRUE(has(read_text("path.yaml"), "frame_id: \"map\"", "\npose"));
+  EXPECT_TRUE(has(read_text("path.obj"), "g pass\n", "g link\n"));
+  std::size_t runs = 0, points = 0;
+  const auto json = read_json("path.json");
+  for (const auto& run : json.at("runs")) {
+    if (run.at("position").size() > 1) ++runs, points += run.at("position").size();
+    EXPECT_EQ(run.at("quaternion").size(), run.at("position").size());
+  }
+  EXPECT_EQ(obj_lines("path.obj", "l").size(), runs);
+  EXPECT_EQ(obj_lines("path.obj", "v").size(), points);
+  expect_refused("coverage box.obj --whole --spacing 0.5",
+                 {{"-o path.ngc", 1, {"G-code needs a feed rate; use --feed"}},
+                  {"-o path.ngc --feed 800", 1, {"faces sideways or down", "use 5 axes"}},
+                  {"-o path.txt", 1, {"must end in", ".ngc or .yaml"}},
+                  {"-o path.csv --lead 90", 2, {"not between -90 and 90 degrees"}},
+                  {"-o path.csv --lead 10 --lag 10", 2, {"--lag"}}});
+}
+
 TEST_F(Coverage, RefusesPartsItCannotCover) {
   write("sphere.xyz", xyz(sphere(500)));
   expect_refused("coverage sphere.xyz -o path.csv",
@@ -123,6 +156,7 @@ TEST_F(Coverage, RefusesPartsItCannotCover) {
                   {"--whole --spacing 0.2 --seed-plane 0,0,4,0,0,1", 1, {"does not cross the region"}},
                   {"--whole --spacing 0.2 --seed-plane 0,0,4", 2, {"six numbers"}},
                   {"--whole --spacing 0.2 --seed-curve '0,0,1 0,0,3'", 1, {"point 1 of the seed curve"}},
+                  {"--whole --spacing 0.2 --inside '1,0,0 0,1,0 0,0,3'", 1, {"point 2 of the region curve"}},
                   {"--whole --spacing 0.2 --mask m", 1, {"--mask m"}},
                   {"--whole --spacing 0.2 --facing 0,0,1 --max-angle 0.001", 1, {"no triangle lies in the region"}},
                   {"--spacing 0.2 --clearance 1", 2, {"--clearance requires --whole"}},

@@ -1,10 +1,14 @@
 // Tool paths over whole parts: the bars of coverage on generated parts, poses, links, regions and errors.
 #include "ahm/applications/tool_path.hpp"
 
+#include <cctype>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <set>
+#include <sstream>
 
+#include "ahm/applications/tool_path_text.hpp"
 #include "ahm/conformance/parts.hpp"
 #include "ahm/pointcloud/point_cloud_surface.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
@@ -60,6 +64,7 @@ void expect_path(const Mesh& mesh, double spacing, const ToolPathSeed& seed = Au
     if (p.kind == ToolMotion::pass) EXPECT_LT(surface.closest_point(p.position).distance, 1e-9);
     if (k == 0) continue;
     const ToolPose& before = path.poses[k - 1];
+    if (before.kind == ToolMotion::approach) EXPECT_GT(dot(before.travel, p.travel), 1 - 1e-9);
     EXPECT_NEAR(p.arclength - before.arclength, norm(p.position - before.position), 1e-9 * p.arclength + 1e-12);
     if (p.kind == ToolMotion::pass && before.kind == ToolMotion::pass && p.pass == before.pass) {
       EXPECT_LE(norm(p.position - before.position), 0.25 * spacing * (1 + 1e-9));
@@ -125,7 +130,8 @@ TEST(ToolPath, IsParallelToADrawnCurveAndToALine) {
   const Mesh mesh = holed_plate();
   const auto surface = surface_of(mesh);
   for (const ToolPathSeed& seed :
-       {ToolPathSeed{CurveSeed{{{0, 0.5, 0}, {6, 0.5, 0}}, false}}, ToolPathSeed{LineSeed{Row{335}, {1, 0, 0}}}}) {
+       {ToolPathSeed{CurveSeed{{{0, 0.5, 0}, {6, 0.5, 0}}, false}}, ToolPathSeed{LineSeed{Row{335}, {1, 0, 0}}},
+        ToolPathSeed{LineSeed{Row{305}, {1, 0, 0}}}}) {
     const ToolPath path = tool_path(surface, {.spacing = 0.25, .seed = seed});
     std::size_t seeds = 0;
     for (const ToolPass& pass : path.passes) {
@@ -161,6 +167,36 @@ TEST(ToolPath, CoversARegionOnly) {
     if (pose.kind == ToolMotion::pass) EXPECT_LE(pose.position[0], 3 + 1e-9);
 }
 
+/// Expects that the passes inside and outside of a curve cover their parts of the surface.
+void expect_enclosed(const Mesh& mesh, const std::vector<Vec3>& curve, double spacing, double inside, double outside,
+                     double tolerance) {
+  const auto surface = surface_of(mesh);
+  for (const bool is_outside : {false, true}) {
+    ToolPathRegion region;
+    region.enclosures.push_back({curve, is_outside});
+    const ToolPath path = tool_path(surface, {.spacing = spacing, .region = region});
+    const ToolPathMeasures measures = tool_path_measures(surface, path, region);
+    EXPECT_NEAR(measures.area, is_outside ? outside : inside, tolerance);
+    EXPECT_GE(measures.covered, 0.99);
+    EXPECT_LE(measures.largest_gap, 1.25);
+    EXPECT_LE(measures.double_covered, 0.03);
+  }
+}
+
+TEST(ToolPath, CoversTheInsideOfAClosedCurve) {
+  // Along the sides of the mesh, and across them.
+  const Mesh square = flat_square(21, 0);
+  expect_enclosed(square, {{0.2, 0.2, 0}, {0.7, 0.2, 0}, {0.7, 0.7, 0}, {0.2, 0.7, 0}}, 0.05, 0.25, 0.75, 1e-9);
+  expect_enclosed(square, {{0.52, 0.13, 0}, {0.83, 0.47, 0}, {0.49, 0.78, 0}, {0.18, 0.44, 0}}, 0.05, 0.2117, 0.7883,
+                  1e-3);
+  std::vector<Vec3> circle;
+  for (int k = 0; k < 40; ++k) {
+    const double angle = k * std::numbers::pi / 20;
+    circle.push_back({std::sqrt(0.75) * std::cos(angle), std::sqrt(0.75) * std::sin(angle), 0.5});
+  }
+  expect_enclosed(icosphere(12), circle, 0.1, std::numbers::pi, 3 * std::numbers::pi, 0.05);
+}
+
 TEST(ToolPath, CoversACloud) {
   const auto surface = pointcloud::PointCloudSurface::build(icosphere(12).positions);
   const ToolPath path = tool_path(surface, {.spacing = 0.2});
@@ -179,6 +215,149 @@ TEST(ToolPath, DoesNotDependOnTheNumberOfThreads) {
     EXPECT_EQ(one.poses[k].position, two.poses[k].position);
     EXPECT_EQ(one.poses[k].quaternion, two.poses[k].quaternion);
   }
+}
+
+TEST(ToolPath, LeadAndTiltLeanTheAxisOnly) {
+  const auto surface = surface_of(torus(500));
+  const double lead = 0.3, tilt = -0.2;
+  const ToolPath upright = tool_path(surface, {.spacing = 0.3}),
+                 leaning = tool_path(surface, {.spacing = 0.3, .lead = lead, .tilt = tilt});
+  ASSERT_EQ(upright.poses.size(), leaning.poses.size());
+  for (std::size_t k = 0; k < upright.poses.size(); ++k) {
+    const ToolPose &p = upright.poses[k], &q = leaning.poses[k];
+    EXPECT_EQ(p.position, q.position);
+    EXPECT_NEAR(dot(q.axis, cross(p.axis, p.travel)), std::sin(tilt), 1e-12);
+    EXPECT_NEAR(std::atan2(dot(q.axis, p.travel), dot(q.axis, p.axis)), lead, 1e-12);
+    EXPECT_NEAR(norm(q.axis), 1, 1e-12);
+    EXPECT_NEAR(norm(q.travel), 1, 1e-12);
+    EXPECT_NEAR(dot(q.axis, q.travel), 0, 1e-12);
+    EXPECT_NEAR(dot(q.travel, cross(p.axis, p.travel)), 0, 1e-12);
+  }
+}
+
+/// A floor z = 0 and a wall x = 0, of 4 x 4 each, with normals into the corner between them.
+Mesh corner_of_two_walls() {
+  return {{{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, {0, 0, 4}, {0, 4, 4}},
+          {{0, 1, 2}, {0, 2, 3}, {0, 3, 5}, {0, 5, 4}}};
+}
+
+TEST(ToolPath, OffsetIsTheCenterOfABall) {
+  const double offset = 0.5;
+  const PlaneSeed across{{0, 2, 0}, {0, 1, 0}};
+  const auto measure = [&](const auto& surface, const ToolPathSeed& seed) {
+    const ToolPath path = tool_path(surface, {.spacing = 0.4, .seed = seed, .offset = offset});
+    for (const ToolPose& p : path.poses) {
+      if (p.kind == ToolMotion::pass) EXPECT_LT(surface.closest_point(p.contact).distance, 1e-9);
+      EXPECT_GE(surface.closest_point(p.position).distance, 0.99 * offset);
+      if (p.kind == ToolMotion::pass) EXPECT_LE(surface.closest_point(p.position).distance, 1.001 * offset);
+    }
+    const ToolPathMeasures measures = tool_path_measures(surface, path),
+                           without = tool_path_measures(surface, tool_path(surface, {.spacing = 0.4, .seed = seed}));
+    EXPECT_GE(measures.covered, 0.99);
+    EXPECT_LE(measures.largest_gap, 1.25);
+    EXPECT_NEAR(measures.double_covered, without.double_covered, 0.005);
+    return path;
+  };
+  measure(surface_of(box({4, 3, 2})), AutomaticSeed{});
+  measure(surface_of(torus(500)), AutomaticSeed{});
+  // In the corner, the ball follows the two lines that are half a unit from floor and wall: no loop.
+  const auto corner = surface_of(corner_of_two_walls());
+  const ToolPath path = measure(corner, across);
+  for (const ToolPass& pass : path.passes) EXPECT_NEAR(pass.length, 2 * (4 - offset), 1e-3);
+  // A ball that is larger than the inside of a sphere fits nowhere.
+  Mesh inside = icosphere(4);
+  for (Triangle& f : inside.faces) std::swap(f[0], f[1]);
+  EXPECT_GE(tool_path(surface_of(inside), {.spacing = 0.3, .offset = 0.5}).passes.size(), 5U);
+  expect_error<InvalidArgument>([&] { tool_path(surface_of(inside), {.spacing = 0.3, .offset = 1.1}); },
+                                "fits nowhere");
+}
+
+TEST(ToolPath, RunsFollowTheMotions) {
+  const ToolPath path = tool_path(surface_of(two_boxes()), {.spacing = 0.5});
+  std::size_t next = 0, passes = 0, on_surface = 0, lifted = 0;
+  for (const ToolRun& run : tool_runs(path)) {
+    EXPECT_EQ(run.begin, next);
+    next = run.end;
+    for (std::size_t k = run.begin; k < run.end; ++k) EXPECT_EQ(path.poses[k].kind, run.kind);
+    EXPECT_EQ(run.from, run.kind == ToolMotion::pass || run.begin == 0 ? run.begin : run.begin - 1);
+    passes += run.kind == ToolMotion::pass;
+    if (run.kind == ToolMotion::link) (run.lifted ? lifted : on_surface) += 1;
+  }
+  EXPECT_EQ(next, path.poses.size());
+  EXPECT_EQ(passes, path.passes.size());
+  EXPECT_EQ(static_cast<Index>(on_surface), path.surface_links);
+  EXPECT_EQ(static_cast<Index>(lifted), path.lifted_links);
+  EXPECT_GT(lifted, 0U);
+}
+
+/// A line of G-code as its words.
+using Block = std::map<char, double>;
+std::vector<Block> blocks(const std::string& program) {
+  std::vector<Block> result;
+  std::istringstream lines(program);
+  for (std::string line; std::getline(lines, line);) {
+    EXPECT_LT(line.size(), 256U);
+    if (line.starts_with('(')) {
+      EXPECT_EQ(line.find(')'), line.size() - 1) << line;
+      continue;
+    }
+    Block block;
+    std::istringstream words(line);
+    for (std::string word; words >> word;) {
+      EXPECT_TRUE(std::isupper(static_cast<unsigned char>(word[0]))) << line;
+      EXPECT_EQ(word.find_first_not_of("0123456789.-", 1), std::string::npos) << line;
+      block[word[0]] = std::stod(word.substr(1));
+    }
+    result.push_back(block);
+  }
+  return result;
+}
+
+TEST(ToolPath, GcodeFollowsThePosesAndIsRapidOnlyAboveTheSurface) {
+  const auto surface = surface_of(joined(box({4, 3, 1}), icosphere(4), {6, 1, 0}));
+  const ToolPath path = tool_path(surface, {.spacing = 0.5, .lead = 0.1});
+  const std::vector<Block> program = blocks(gcode(path, {.feed = 800, .axes = 5, .inches = true, .blend = 0.01}));
+  EXPECT_EQ(program.back(), (Block{{'M', 2}}));
+  EXPECT_EQ(program[1], (Block{{'G', 64}, {'P', 0.01}}));
+  std::size_t k = 0, feeds = 0;
+  Block before;
+  for (std::size_t b = 2; b + 1 < program.size(); ++b, ++k) {
+    const Block& block = program[b];
+    const Vec3 position{block.at('X'), block.at('Y'), block.at('Z')};
+    const double a = block.at('A') * std::numbers::pi / 180, c = block.at('C') * std::numbers::pi / 180;
+    const Vec3 axis{std::sin(a) * std::sin(c), std::sin(a) * std::cos(c), std::cos(a)};
+    const auto is_reached = [&] {
+      return norm(path.poses[k].position - position) < 1e-6 && norm(path.poses[k].axis - axis) < 1e-6;
+    };
+    while (k < path.poses.size() && !is_reached()) ++k;  // poses that repeat the previous one have no line
+    ASSERT_LT(k, path.poses.size()) << "line " << b;
+    feeds += block.count('F');
+    if (block.at('G') == 0) {
+      EXPECT_NE(path.poses[k].kind, ToolMotion::pass);
+      EXPECT_GT(surface.closest_point(position).distance, 0.1);
+    }
+    if (b > 2 && path.poses[k].kind == ToolMotion::pass) {  // the nearer of both pairs of angles
+      EXPECT_LE(std::abs(block.at('C') - before['C']), 180) << "line " << b;
+      EXPECT_LE(std::abs(block.at('A') - before['A']), 180) << "line " << b;
+    }
+    before = block;
+  }
+  EXPECT_EQ(k, path.poses.size());
+  EXPECT_EQ(feeds, 1U);
+
+  const ToolPathRegion top{.facing = ToolPathRegion::Facing{{0, 0, 1}, 0.5}};
+  const std::string up = gcode(tool_path(surface_of(box({4, 3, 1})), {.spacing = 0.5, .region = top}), {.feed = 50});
+  EXPECT_EQ(up.find('A'), std::string::npos);
+  EXPECT_NE(up.find("G21 "), std::string::npos);
+  const auto refuses = [](const ToolPath& of, const GcodeOptions& options, const std::string& text) {
+    expect_error<InvalidArgument>([&] { gcode(of, options); }, text);
+  };
+  refuses(path, {.feed = 800}, "faces sideways or down");
+  refuses(path, {.feed = 0}, "feed is 0");
+  refuses(path, {.feed = 1, .axes = 4}, "3 or 5 axes");
+  ToolPath torn = path;
+  torn.missing_links = 2;
+  refuses(torn, {.feed = 1, .axes = 5}, "2 missing links");
 }
 
 TEST(ToolPath, MeasuresFindGapsAndDoublePasses) {
@@ -200,10 +379,27 @@ TEST(ToolPath, RejectsWhatCannotBeCovered) {
   refuses({.spacing = 100}, "larger than the region");
   refuses({.spacing = 0.2, .seed = PlaneSeed{{0, 0, 5}, {0, 0, 1}}}, "does not cross the region");
   refuses({.spacing = 0.2, .seed = BoundarySeed{}}, "no boundary");
+  refuses({.spacing = 0.2, .seed = LineSeed{Row{3}, {0, 0, 0}}}, "the seed line has no length");
   refuses({.spacing = 0.2, .seed = CurveSeed{{{0, 0, 1}, {0, 0, 3}}, false}}, "point 1 of the seed curve");
   refuses({.spacing = 0.2, .region = {.rows = std::vector<bool>(162, false)}}, "no triangle lies in the region");
   refuses({.spacing = 0.2, .region = {.rows = std::vector<bool>(3, true)}}, "3 rows");
   refuses({.spacing = 0.2, .step = -1}, "step is -1");
+  refuses({.spacing = 0.2, .lead = 2}, "lead is 2");
+  const auto enclosed = [](const std::vector<Vec3>& points) {
+    ToolPathRegion region;
+    region.enclosures.push_back({points});
+    return region;
+  };
+  refuses({.spacing = 0.2, .region = enclosed({{1, 0, 0}, {0, 1, 0}, {0, 0, 2}})}, "point 2 of the region curve");
+  refuses({.spacing = 0.2, .region = enclosed({{0.99, 0.07, 0}, {0.99, -0.07, 0}, {0.99, 0, 0.1}})},
+          "larger than the region");
+  const double tube = 1.4;  // around the tube of a torus, which does not divide it
+  const auto ring = surface_of(torus(500));
+  expect_error<InvalidArgument>(
+      [&] {
+        tool_path(ring, {.spacing = 0.2, .region = enclosed({{tube, 0, 0}, {1, 0, 0.4}, {0.6, 0, 0}, {1, 0, -0.4}})});
+      },
+      "does not divide the surface");
 }
 
 }  // namespace

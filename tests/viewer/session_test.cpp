@@ -287,9 +287,33 @@ TEST(ViewerSessionOfACloud, IsDrawnByItsTrianglesAndHasPaths) {
   EXPECT_NEAR(path.at("length").get<double>() * scale_of(session), 0.3, 1e-9);
 }
 
+TEST_F(ViewerSession, CoversTheWholeSurface) {
+  const Session on_sphere(surface, sphere.geometry, sphere_options());
+  const double scale = scale_of(on_sphere);
+  const json curve = {at_row(0), at_row(30)};
+  for (const bool drawn : {false, true}) {
+    json request{{"spacing", 0.25}};
+    if (drawn) request["curve"] = curve;
+    ToolPathOptions options{.spacing = 0.25};
+    if (drawn) options.seed = CurveSeed{{surface.position(Row{0}), surface.position(Row{30})}};
+    const ToolPath expected = ahm::tool_path(surface, options);
+    const json path = json_answer(on_sphere, "whole", request);
+    EXPECT_EQ(path.at("passes").at("pieces").size(), expected.passes.size());
+    EXPECT_NEAR(path.at("length").get<double>() * scale, expected.pass_length, 1e-9);
+    EXPECT_NEAR(path.at("link_length").get<double>() * scale, expected.link_length, 1e-9);
+    EXPECT_NEAR(path.at("area").get<double>() * scale * scale, 4 * std::numbers::pi, 0.5);
+    EXPECT_GT(path.at("covered").get<double>(), 0.99);
+    EXPECT_FALSE(path.at("links").at("points").empty());
+    EXPECT_EQ(path.at("command"), std::string("ahm coverage sphere.ply --whole --spacing 0.25 ") +
+                                      (drawn ? "--seed-curve '0 30' " : "") + "-o whole.csv");
+  }
+  EXPECT_EQ(answer(on_sphere, "whole", {{"spacing", 1e-6}}).status, 400);
+  EXPECT_EQ(answer(on_sphere, "whole", {{"spacing", 1e3}}).status, 400);
+}
+
 TEST_F(ViewerSession, ExportsTheFilesOfItsWriters) {
   SessionOptions options = sphere_options();
-  for (const char* what : {"map", "stroke", "path", "coverage", "decal"}) options.formats[what] = {"csv"};
+  for (const char* what : {"map", "stroke", "path", "coverage", "whole", "decal"}) options.formats[what] = {"csv"};
   std::filesystem::path folder;
   std::vector<Vec3> path;
   CoveragePath covered;
@@ -305,6 +329,7 @@ TEST_F(ViewerSession, ExportsTheFilesOfItsWriters) {
   options.write_coverage = [&](const File& file, const CoveragePath& points) {
     std::ofstream(file) << (covered = points).points.size();
   };
+  options.write_whole = [&](const File& file, const ToolPath& points) { std::ofstream(file) << points.poses.size(); };
   options.write_decal = [&](const File& file, const InverseMap&, const DecalOptions& decal, const Image& image) {
     decal_options = decal;
     std::ofstream(file) << image.width << ' ' << image.height;
@@ -333,6 +358,9 @@ TEST_F(ViewerSession, ExportsTheFilesOfItsWriters) {
   ASSERT_EQ(covered.points.size(), expected.points.size());
   for (std::size_t k = 0; k < expected.points.size(); ++k)
     EXPECT_EQ(covered.points[k].position, expected.points[k].position);
+
+  EXPECT_EQ(exported("whole", {{"spacing", 0.3}}).body,
+            std::to_string(ahm::tool_path(surface, {.spacing = 0.3}).poses.size()));
 
   const auto decal = [&](const char* image) {
     return exported("decal", from_row(0, {{"size", 0.4}, {"angle", 90}, {"image", image}}));

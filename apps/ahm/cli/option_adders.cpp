@@ -338,4 +338,9 @@ void add_map_results(CLI::App& app, OutputOptions& o) {
   add_verbosity(app, o.verbosity);
 }
 
+void add_graph_and_results(CLI::App& app, InputOptions& input, SolveOptions& solve, OutputOptions& output) {
+  add_graph_options(app, input, solve);
+  add_map_results(app, output);
+}
+
 }  // namespace ahm::app

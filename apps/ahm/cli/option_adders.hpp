@@ -116,5 +116,7 @@ CLI::Option* add_view(CLI::App& app, OutputOptions& o);
 void add_verbosity(CLI::App& app, Verbosity& verbosity, const std::string& group = "Options");
 /// Adds --json, --view, the options of pictures of a map, --verbose and --quiet.
 void add_map_results(CLI::App& app, OutputOptions& o);
+/// Adds the options of `add_graph_options` and `add_map_results`, which end the help of a subcommand.
+void add_graph_and_results(CLI::App& app, InputOptions& input, SolveOptions& solve, OutputOptions& output);
 
 }  // namespace ahm::app

@@ -47,13 +47,23 @@ constexpr const char* coverage_footer =
     "link,\n"
     "approach, retreat; in .ply and .vtp 0 to 3), x,y,z, nx,ny,nz (tool axis), hx,hy,hz (direction of travel), "
     "qw,qx,qy,qz\n"
-    "(quaternion that takes z to the axis and x to the travel), arclength (from the first pose).\n"
+    "(quaternion that takes z to the axis and x to the travel), arclength (from the first pose); with --offset "
+    "cx,cy,cz "
+    "(the\n"
+    "point of the surface), with --feed time (seconds, also for lifted motions). OUTPUT can also be:\n"
+    "  .obj   a line per pass and per link, in the groups pass, link, approach and retreat\n"
+    "  .json  an object per pass and per link, with the poses\n"
+    "  .ngc   G-code, RS-274/NGC as LinuxCNC reads it: lifted motions are G0, all others G1. With --axes 5 the tool "
+    "axis is\n"
+    "         (sin A sin C, sin A cos C, cos A), and X Y Z is the tool center point, as in LinuxCNC's xyzac-trt\n"
+    "  .yaml  a message of ROS 1 for 'rostopic pub -f'\n"
     "\n"
     "Examples:\n"
     "  ahm coverage scan.ply --source 0.1,0.2,1.4 --radius 0.2 --spacing 0.01 -o path.csv\n"
     "  ahm coverage part.stl --source 17 --radius 30 --spacing 2 --pattern spiral -o path.ply\n"
     "  ahm coverage part.obj --whole --spacing 2 -o path.csv\n"
-    "  ahm coverage part.obj --whole --spacing 2 --facing 0,0,1 --max-angle 60 -o path.vtp --json path.json";
+    "  ahm coverage part.obj --whole --spacing 2 --facing 0,0,1 --max-angle 60 -o path.vtp --json path.json\n"
+    "  ahm coverage part.obj --whole --spacing 2 --axes 5 --lead 10 --feed 800 -o path.ngc";
 
 struct CoverageCommandOptions {
   InputOptions input;

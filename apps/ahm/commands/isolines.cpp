@@ -152,8 +152,7 @@ void offer(CLI::App& app, IsolinesOptions& o) {
   });
   add_table_output(app, o.output)->required();
   add_method(app, o.solve, {Method::polar, Method::exact}, true);
-  add_graph_options(app, o.input, o.solve);
-  add_map_results(app, o.output);
+  add_graph_and_results(app, o.input, o.solve, o.output);
 }
 
 }  // namespace

@@ -188,8 +188,7 @@ void offer(CLI::App& app, StrokeCommandOptions& o) {
   add_parsed(app, "--radius", o.solve.radius, parse_positive, "R",
              "Map only points within this distance of the curve; smaller is faster");
   add_method(app, o.solve, {Method::exact});
-  add_graph_options(app, o.input, o.solve);
-  add_map_results(app, o.output);
+  add_graph_and_results(app, o.input, o.solve, o.output);
 }
 
 }  // namespace

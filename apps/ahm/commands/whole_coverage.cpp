@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "ahm/error.hpp"
-#include "ahm/io/write.hpp"
 #include "cli/option_adders.hpp"
 #include "cli/source_list.hpp"
 #include "commands/line_finder.hpp"
@@ -42,31 +42,6 @@ const char* word(PassOrigin origin) {
   return "";
 }
 
-/// One row per pose, and an edge between consecutive poses.
-void write_poses(const OutputOptions& output, const ToolPath& path) {
-  std::vector<Index> pass;
-  std::vector<std::uint8_t> kind;
-  std::vector<Vec3> position, normal, heading;
-  std::vector<double> q[4], arclength;
-  io::Table table{.title = "tool path by libahm", .text = true};
-  for (const ToolPose& pose : path.poses) {
-    const auto row = static_cast<Index>(pass.size());
-    if (row > 0) table.edges.push_back({row - 1, row});
-    pass.push_back(pose.pass), kind.push_back(static_cast<std::uint8_t>(pose.kind));
-    position.push_back(pose.position), normal.push_back(pose.axis), heading.push_back(pose.travel);
-    for (std::size_t c = 0; c < 4; ++c) q[c].push_back(pose.quaternion[c]);
-    arclength.push_back(pose.arclength);
-  }
-  table.add("pass", pass);
-  table.columns.push_back({{"kind"}, io::CodedWords{kind, {"pass", "link", "approach", "retreat"}}});
-  table.add({"x", "y", "z"}, position);
-  table.add({"nx", "ny", "nz"}, normal);
-  table.add({"hx", "hy", "hz"}, heading);
-  for (std::size_t c = 0; c < 4; ++c) table.add(std::string("q") + "wxyz"[c], q[c]);
-  table.add("arclength", arclength);
-  io::write(output.output, table, output.format);
-}
-
 /// The region of --mask: rows whose value is not zero.
 std::vector<bool> mask_of(const io::Geometry& geometry, const std::string& name) {
   for (const io::Property& property : geometry.properties) {
@@ -78,14 +53,18 @@ std::vector<bool> mask_of(const io::Geometry& geometry, const std::string& name)
   throw InvalidArgument(fmt::format("--mask {}: the input has no such column", name));
 }
 
+std::vector<Vec3> curve_of(const Input& input, const std::vector<SourceSpec>& specs, const std::string& option) {
+  std::vector<Vec3> points;
+  for (const SourceSpec& spec : specs) points.push_back(position_of(input, spec, option));
+  return points;
+}
+
 ToolPathSeed seed_of(const WholeOptions& options, const Input& input) {
   if (options.from_boundary) return BoundarySeed{};
   if (const auto& p = options.plane; !p.empty()) return PlaneSeed{{p[0], p[1], p[2]}, {p[3], p[4], p[5]}};
   if (options.line) return LineSeed{point_on_surface(input, *options.line, "--seed-line"), *options.direction};
   if (options.curve.empty()) return AutomaticSeed{};
-  CurveSeed curve{{}, options.closed};
-  for (const SourceSpec& spec : options.curve) curve.points.push_back(position_of(input, spec, "--seed-curve"));
-  return curve;
+  return CurveSeed{curve_of(input, options.curve, "--seed-curve"), options.closed};
 }
 
 void write_view(const InputOptions& input_options, const OutputOptions& output, const Input& input,
@@ -175,6 +154,10 @@ void offer_whole(CLI::App& app, WholeOptions& o) {
       "Cover only triangles whose normal is near a direction");
   add("--max-angle", o.max_angle, parse_degrees, "DEG", "Largest angle between normal and --facing (default 45)")
       ->needs(facing);
+  add("--inside", o.inside, parse_sources, "POINTS",
+      "Cover only what the closed curve through points encloses: all parts but the largest into which it divides the\n"
+      "surface. List or file of SPECs");
+  add("--outside", o.outside, parse_sources, "POINTS", "Leave out what the closed curve through points encloses");
   add("--chord-error", o.path.chord_error, parse_positive, "E",
       "Largest distance of the passes from the chords between poses (default: S / 200)");
   add("--tool-radius", o.path.tool_radius, parse_positive, "R",
@@ -184,15 +167,32 @@ void offer_whole(CLI::App& app, WholeOptions& o) {
       "Longest link on the surface; longer ones are lifted (default: 3 S)");
   auto* one_way = app.add_flag("--one-way", o.path.one_way, "All passes run in the same direction")->needs(whole);
   app.add_flag("--zigzag", o.zigzag, "Directions of passes alternate (default)")->needs(whole)->excludes(one_way);
+  const auto lean = [](const std::string& text) {
+    const double angle = parse_degrees(text);
+    if (!(std::abs(angle) < std::numbers::pi / 2))
+      throw std::invalid_argument(fmt::format("'{}' is not between -90 and 90 degrees", text));
+    return angle;
+  };
+  auto* lead = add("--lead", o.path.lead, lean, "DEG", "The tool leans toward the travel by DEG degrees");
+  add(
+      "--lag", o.path.lead, [=](const std::string& text) { return -lean(text); }, "DEG",
+      "The tool leans against the travel by DEG degrees")
+      ->excludes(lead);
+  add("--tilt", o.path.tilt, lean, "DEG", "The tool leans to the left of the travel by DEG degrees; < 0: to the right");
+  add("--offset", o.path.offset, parse_positive, "D",
+      "Distance of the poses from the surface, as the center of a ball of radius D on it");
+  offer_path_files(app, o.files, whole);
 }
 
 void run_whole(const InputOptions& input_options, const OutputOptions& output, const WholeOptions& options,
                const std::optional<SourceSpec>& source, double radius) {
-  check_results(input_options.path, output, {".csv", ".jsonl", ".ply", ".vtp"});
+  check_results(input_options.path, output, path_endings());
+  check_path_file(output, options.files);
   if (input_options.around_source)
     throw InvalidArgument("--local: cannot be combined with --whole, which needs the whole input");
   Journal journal(output.verbosity);
   std::vector<SourceSpec> named = options.curve;
+  for (const auto* curve : {&options.inside, &options.outside}) named.insert(named.end(), curve->begin(), curve->end());
   for (const auto& spec : {source, options.line})
     if (spec) named.push_back(*spec);
   const Input input = open_input(with_named_points(input_options, named), journal);
@@ -203,6 +203,8 @@ void run_whole(const InputOptions& input_options, const OutputOptions& output, c
   if (source) o.region.disc = {point_on_surface(input, *source, "--source"), radius};
   if (!options.mask.empty()) o.region.rows = mask_of(input.geometry, options.mask);
   if (options.facing) o.region.facing = {*options.facing, options.max_angle};
+  if (!options.inside.empty()) o.region.enclosures.push_back({curve_of(input, options.inside, "--inside")});
+  if (!options.outside.empty()) o.region.enclosures.push_back({curve_of(input, options.outside, "--outside"), true});
   journal.start("path");
   const ToolPath path = tool_path(input.surface(), o);
   journal.start("measures");
@@ -222,7 +224,7 @@ void run_whole(const InputOptions& input_options, const OutputOptions& output, c
                     100 * (1 - measures.covered), measures.largest_gap));
   write_view(input_options, output, input, path, journal);
   journal.start("write");
-  write_poses(output, path);
+  write_tool_path(output.output, output.format, options.files, o, path);
   report(input_options.path, output, input, path, measures, journal);
 }
 

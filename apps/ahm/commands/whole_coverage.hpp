@@ -9,6 +9,7 @@
 
 #include "ahm/applications/tool_path.hpp"
 #include "cli/options.hpp"
+#include "commands/tool_path_files.hpp"
 
 namespace ahm::app {
 
@@ -16,8 +17,9 @@ namespace ahm::app {
 struct WholeOptions {
   bool whole = false;
   bool from_boundary = false;
-  std::vector<double> plane;  ///< point and normal: six numbers; empty: none
-  std::vector<SourceSpec> curve;
+  std::vector<double> plane;                ///< point and normal: six numbers; empty: none
+  std::vector<SourceSpec> curve;            ///< of the seed
+  std::vector<SourceSpec> inside, outside;  ///< closed curves that limit the region
   bool closed = false;
   std::optional<SourceSpec> line;
   std::optional<Vec3> direction;
@@ -26,6 +28,7 @@ struct WholeOptions {
   std::optional<Vec3> facing;
   double max_angle = 0.785398163397448;  ///< radians
   ToolPathOptions path = {};
+  PathFileOptions files = {};
 };
 
 /// Adds --whole and the options that need it.

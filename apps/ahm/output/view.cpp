@@ -12,6 +12,7 @@
 #include "output/lines.hpp"
 #include "output/results.hpp"
 #include "output/texture_output.hpp"
+#include "output/tool_paths.hpp"
 
 namespace ahm::app {
 namespace {
@@ -51,7 +52,8 @@ viewer::SessionOptions View::session_options(const ViewOptions& options) const {
   session.formats = {{"map", {"csv", "ply", "vtp", "jsonl", "pcd"}},
                      {"stroke", {"csv", "ply", "vtp", "jsonl", "pcd"}},
                      {"path", {"obj", "csv", "ply", "vtp", "jsonl"}},
-                     {"coverage", {"csv", "ply", "vtp", "jsonl"}}};
+                     {"coverage", {"csv", "ply", "vtp", "jsonl"}},
+                     {"whole", {"csv", "ply", "vtp", "jsonl", "obj", "json", "yaml"}}};
   if (io::has_images()) session.formats["decal"] = {"glb", "ply"};
   session.worded = [](const Error& error) { return worded(error); };
   session.write = [this](const std::filesystem::path& file, const RowLogMap& rows, const std::vector<double>& quality) {
@@ -66,6 +68,9 @@ viewer::SessionOptions View::session_options(const ViewOptions& options) const {
   };
   session.write_coverage = [](const std::filesystem::path& file, const CoveragePath& path) {
     write_coverage(file.string(), "", path);
+  };
+  session.write_whole = [](const std::filesystem::path& file, const ToolPath& path) {
+    write_tool_path(file.string(), "", {}, {.spacing = path.spacing}, path);
   };
   session.write_decal = [this](const std::filesystem::path& file, const InverseMap& inverse, const DecalOptions& decal,
                                const Image& image) {

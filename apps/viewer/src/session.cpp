@@ -18,6 +18,7 @@
 #endif
 
 #include "ahm/applications/stroke.hpp"
+#include "ahm/applications/tool_path_text.hpp"
 #include "ahm/error.hpp"
 #include "ahm/io/atomic_file.hpp"
 #include "ahm/maps/log_map_solver.hpp"
@@ -476,6 +477,52 @@ struct Session::Impl {
                              settings)}});
   }
 
+  /// The tool path over the whole surface.
+  ToolPath whole_path(const Request& request, const StopToken& stop) const {
+    ToolPathOptions wanted{.spacing = request.positive("spacing"), .progress = until(stop), .threads = options.threads};
+    constexpr double most_passes = 500;
+    if (page.scale() / wanted.spacing > most_passes)
+      throw InvalidArgument("request: more than 500 passes; choose a larger \"spacing\"");
+    if (request.has("curve")) {
+      CurveSeed seed;
+      for (const SurfacePoint& point : request.points("curve"))
+        seed.points.push_back(surface.position(standing_for(surface, point)));
+      wanted.seed = std::move(seed);
+    }
+    return ahm::tool_path(surface, wanted);
+  }
+
+  Answer answer_whole(const Request& request) {
+    const StopToken stop = channels.begin(request.client(), Channels::Kind::coverage, request.number());
+    const ToolPath path = whole_path(request, stop);
+    const ToolPathMeasures measures = tool_path_measures(surface, path);
+    json curves;
+    for (const bool on_passes : {true, false}) {
+      json points = json::array(), pieces = json::array();
+      for (const ToolRun& run : tool_runs(path)) {
+        if ((run.kind == ToolMotion::pass) != on_passes) continue;
+        pieces.push_back(points.size());
+        for (std::size_t k = run.from; k < run.end; ++k) points.push_back(page.to_page(path.poses[k].position));
+      }
+      curves.push_back({{"points", points}, {"pieces", pieces}});
+    }
+    std::vector<std::string> words{"--whole", "--spacing", number(path.spacing)};
+    if (request.has("curve")) {
+      std::string list;
+      for (const SurfacePoint& point : request.points("curve"))
+        list.append(list.empty() ? "" : " ").append(spec(surface, standing_for(surface, point)));
+      words.insert(words.end(), {"--seed-curve", list});
+    }
+    words.insert(words.end(), {"-o", "whole.csv"});
+    return answer_of({{"passes", curves[0]},
+                      {"links", curves[1]},
+                      {"length", path.pass_length / page.scale()},
+                      {"link_length", path.link_length / page.scale()},
+                      {"area", measures.area / (page.scale() * page.scale())},
+                      {"covered", measures.covered},
+                      {"command", command(options, "coverage", words, {})}});
+  }
+
   void write_map(const Request& request, const std::filesystem::path& file, const StopToken& stop) {
     const Settings settings = request.settings(options.settings);
     const SurfacePoint source = point_in(request, "source");
@@ -518,6 +565,7 @@ struct Session::Impl {
       if (what == "decal") return write_decal(request, file, stop);
       if (what == "path")
         return options.write_path(file, path({point_in(request, "from"), point_in(request, "to")}, stop).points);
+      if (what == "whole") return options.write_whole(file, whole_path(request, stop));
       options.write_coverage(file, tool_path(point_in(request, "source"), request.coverage(),
                                              of_patch(request.settings(options.settings)), stop));
     };
@@ -532,6 +580,7 @@ struct Session::Impl {
     if (name == "stroke") return answer_stroke(request);
     if (name == "path") return answer_path(request);
     if (name == "coverage") return answer_coverage(request);
+    if (name == "whole") return answer_whole(request);
     if (name == "export") return answer_export(request);
     return refusal(404, "there is no request of this name");
   }

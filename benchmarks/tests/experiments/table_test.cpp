@@ -100,6 +100,11 @@ TEST(UserMeshes, AreRunAsWellAndBrokenFilesLeftOut) {
   ASSERT_EQ(surfaces.polygons.size(), 1u);
   EXPECT_EQ(surfaces.polygons[0].name, "square");
   EXPECT_EQ(surfaces.triangles.size(), 1u);
+  std::ofstream(folder / "points.xyz") << "0 0 0\n1 0 0\n0 1 0\n";
+  const std::vector<NamedCloud> clouds = user_clouds(settings, 3);
+  ASSERT_EQ(clouds.size(), 1u);
+  EXPECT_EQ(clouds[0].name, "points");
+  EXPECT_TRUE(user_clouds(settings, 2).empty());
   for (const Experiment& e : experiments())
     if (e.name == "variants") EXPECT_FALSE(e.run(settings).where("shape", "octahedron").rows().empty());
 }

@@ -14,6 +14,7 @@
 #include "ahm/applications/mean.hpp"
 #include "ahm/applications/stroke.hpp"
 #include "ahm/applications/tool_path.hpp"
+#include "ahm/applications/tool_path_text.hpp"
 #include "ahm/cholesky/cholesky.hpp"
 #include "ahm/cholesky/conjugate_gradient.hpp"
 #include "ahm/cholesky/linear_solver.hpp"

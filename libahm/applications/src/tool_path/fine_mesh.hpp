@@ -27,8 +27,9 @@ exact::PolyhedralSurface polyhedral(const FaceMesh& mesh);
 /// Finds points of a mesh near positions, with a grid of cubes.
 class FaceLocator {
  public:
-  /// @param reach  largest distance of `nearest`; about the length of the sides
-  FaceLocator(const FaceMesh& mesh, double reach);
+  /// @param mesh   must outlive the locator; its sides are about as long as the reach
+  /// @param reach  largest distance of `nearest`
+  explicit FaceLocator(const FaceMesh& mesh, double reach = 0.5);
   ~FaceLocator();
   FaceLocator(FaceLocator&&) noexcept;
 

@@ -51,23 +51,25 @@ std::vector<PassPoint> points_of_passes(const ToolPath& path, double step) {
   std::vector<PassPoint> result;
   for (std::size_t p = 0; p < path.passes.size(); ++p) {
     const ToolPass& pass = path.passes[p];
+    const std::size_t first = result.size();
     double walked = 0;
     for (std::size_t k = pass.begin; k + 1 < pass.end; ++k) {
       const ToolPose &a = path.poses[k], &b = path.poses[k + 1];
-      const double length = distance(a.position, b.position) / path.spacing;
+      const double length = distance(a.contact, b.contact) / path.spacing;
       const auto parts = std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil(length / step)));
       for (std::size_t j = 0; j < parts; ++j) {
         const double t = (static_cast<double>(j) + 0.5) / static_cast<double>(parts);
-        result.push_back({(1 / path.spacing) * ((1 - t) * a.position + t * b.position),
+        result.push_back({(1 / path.spacing) * ((1 - t) * a.contact + t * b.contact),
                           {},
                           -1,
                           static_cast<Index>(p),
                           walked + t * length,
-                          pass.length / path.spacing,
+                          0,
                           pass.closed});
       }
       walked += length;
     }
+    for (std::size_t k = first; k < result.size(); ++k) result[k].pass_length = walked;
   }
   return result;
 }
@@ -126,10 +128,11 @@ ToolPathMeasures tool_path_measures(const Surface& surface, const ToolPath& path
   for (std::size_t f = 0; f < domain.mesh.size(); ++f)
     spread.in_face(static_cast<Index>(f), domain.mesh.area(static_cast<Index>(f)),
                    [&](const MeshPoint& point) { options.targets.push_back(point); });
+  const FaceLocator locator(domain.mesh);
   std::vector<PassPoint> points = points_of_passes(path, step);
   std::vector<MeshPoint> sources;
   for (PassPoint& point : points)
-    if (const auto on_mesh = domain.locator.nearest(point.position)) {
+    if (const auto on_mesh = locator.nearest(point.position)) {
       sources.push_back(*on_mesh);
       point.normal = domain.mesh.area_normal(on_mesh->face);
       point.component = domain.surface.component(domain.mesh.faces[to_size(on_mesh->face)][0]);

@@ -19,13 +19,12 @@ struct PassCurve {
 
 /// The mesh to cover, and its exact geodesics.
 struct PathDomain {
-  explicit PathDomain(FaceMesh triangles) : mesh(std::move(triangles)), surface(polyhedral(mesh)), locator(mesh, 0.5) {}
+  explicit PathDomain(FaceMesh triangles) : mesh(std::move(triangles)), surface(polyhedral(mesh)) {}
   PathDomain(const PathDomain&) = delete;
   PathDomain& operator=(const PathDomain&) = delete;
 
   FaceMesh mesh;
   exact::PolyhedralSurface surface;
-  FaceLocator locator;
 };
 
 /// Longest side of the fine mesh.

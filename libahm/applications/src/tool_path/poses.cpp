@@ -5,8 +5,10 @@
 #include <optional>
 #include <unordered_set>
 
+#include "ahm/error.hpp"
 #include "ahm/util/parallel.hpp"
 #include "ahm/util/small_math.hpp"
+#include "ahm/util/text.hpp"
 #include "ahm/util/vec.hpp"
 #include "tool_path/tool_path.hpp"
 
@@ -17,10 +19,10 @@ using exact::MeshPoint;
 
 constexpr double unlimited = std::numeric_limits<double>::infinity();
 
-/// A point of the path on the mesh, with the axis of the tool.
+/// A point of the path on the mesh, with the position and the axis of the tool.
 struct Spot {
   MeshPoint point;
-  Vec3 position, axis;
+  Vec3 contact, position, axis;
 };
 using Track = std::vector<Spot>;
 
@@ -208,8 +210,13 @@ void exchange(std::vector<TrackedPass>& passes) {
 class Linker {
  public:
   Linker(const Surface& surface, const PathDomain& domain, const SmoothNormals& normals, double spacing,
-         double clearance)
-      : surface_(surface), domain_(domain), normals_(normals), spacing_(spacing), clearance_(clearance) {
+         double clearance, double offset)
+      : surface_(surface),
+        domain_(domain),
+        normals_(normals),
+        spacing_(spacing),
+        clearance_(clearance),
+        offset_(offset) {
     Vec3 low = domain.mesh.points.front(), high = low;
     for (const Vec3& p : domain.mesh.points)
       for (std::size_t axis = 0; axis < 3; ++axis)
@@ -222,21 +229,20 @@ class Linker {
   /// Whether the tool can rise from the surface to the clearance.
   bool can_rise(const Spot& spot) const {
     for (const double share : {0.25, 0.5, 0.75, 1.0})
-      if (distance_from_surface(spot.position + share * clearance_ * spot.axis) < 0.25 * share * clearance_)
-        return false;
+      if (distance_from_surface(spot.position + share * clearance_ * spot.axis) < least_height(share)) return false;
     return true;
   }
 
   /// The path on the surface, with both ends; none if it is longer than `longest`, or the surface does not connect the ends.
   std::optional<Track> on_surface(const Spot& from, const Spot& to, double longest) const {
-    if (distance(from.position, to.position) > longest) return {};
+    if (distance(from.contact, to.contact) > longest) return {};
     if (domain_.surface.component(domain_.mesh.faces[to_size(from.point.face)][0]) !=
         domain_.surface.component(domain_.mesh.faces[to_size(to.point.face)][0]))
       return {};
     const exact::GeodesicPath path = exact::locally_shortest_path(domain_.surface, from.point, to.point);
     if (path.status != Status::ok || path.length > longest) return {};
     Track track{from};
-    for (std::size_t k = 1; k + 1 < path.points.size(); ++k) track.push_back(spot(path.points[k]));
+    for (std::size_t k = 1; k + 1 < path.points.size(); ++k) append(path.points[k], track);
     track.push_back(to);
     return track;
   }
@@ -263,22 +269,58 @@ class Linker {
     return {};
   }
 
-  Spot spot(const MeshPoint& point) const { return {point, domain_.mesh.position(point), normals_.at(point)}; }
+  /// Appends the pose at a point to a track, unless a ball of the offset does not fit there, or the pose is the last one.
+  void append(const MeshPoint& point, Track& track) const {
+    Spot spot{point, domain_.mesh.position(point), {}, normals_.at(point)};
+    const std::optional<Vec3> position = offset_ > 0 ? ball_center(spot.contact, spot.axis) : spot.contact;
+    if (!position) return;
+    spot.position = *position;
+    if (offset_ > 0 && !track.empty() && distance(track.back().position, spot.position) < same_place) {
+      if (dot(track.back().axis, spot.axis) > same_axis) return;
+      spot.position = track.back().position;  // the tool turns at this place
+    }
+    track.push_back(spot);
+  }
 
  private:
+  /// Poses of an offset path that are closer are one place, in spacings, and directions with a larger cosine one axis.
+  static constexpr double same_place = 0.0125, same_axis = 0.99;
+
+  /// Smallest distance from the surface of a lifted path at a share of the clearance.
+  double least_height(double share) const { return 0.99 * offset_ + 0.25 * share * clearance_; }
+
+  /// The center of a ball that touches the surface from above, near a point. The ball grows there, and moves away from the
+  /// surface where it would intersect. None: it does not fit.
+  std::optional<Vec3> ball_center(const Vec3& contact, const Vec3& axis) const {
+    constexpr int stages = 8, max_moves = 40;
+    constexpr double tolerance = 1e-4;
+    Vec3 center = contact;
+    for (int stage = 1; stage <= stages; ++stage) {
+      const double radius = stage * offset_ / stages;
+      center = center + (offset_ / stages) * axis;
+      for (int move = 0;; ++move) {
+        const Vec3 nearest = (1 / spacing_) * surface_.closest_point(spacing_ * center).position;
+        const double away = distance(center, nearest);
+        if (away >= (1 - tolerance) * radius) break;
+        if (move == max_moves || !(away > 0)) return {};
+        center = nearest + (radius / away) * (center - nearest);
+      }
+    }
+    return center;
+  }
   double distance_from_surface(const Vec3& position) const {
     return surface_.closest_point(spacing_ * position).distance / spacing_;
   }
   /// Whether a segment keeps a quarter of the clearance to the surface: from every point the distance to the surface is a
   /// step that cannot reach it.
   bool is_free(const Vec3& from, const Vec3& to) const {
-    const double length = distance(from, to), least = 0.25 * clearance_;
+    const double length = distance(from, to), least = least_height(1);
     for (double walked = 0;;) {
       const double share = length > 0 ? std::min(1.0, walked / length) : 1;
       const double away = distance_from_surface((1 - share) * from + share * to);
       if (away < least) return false;
       if (share >= 1) return true;
-      walked += std::max(away - least, 0.1 * least);
+      walked += std::max(away - least, 0.025 * clearance_);
     }
   }
   bool is_free(const std::vector<Vec3>& points) const {
@@ -290,7 +332,7 @@ class Linker {
   const Surface& surface_;
   const PathDomain& domain_;
   const SmoothNormals& normals_;
-  double spacing_, clearance_, extent_ = 0;
+  double spacing_, clearance_, offset_, extent_ = 0;
 };
 
 /// Appends poses to a path. Positions are converted to world units.
@@ -298,18 +340,30 @@ class PoseWriter {
  public:
   PoseWriter(ToolPath& path, double spacing) : path_(path), spacing_(spacing) {}
 
+  void add(const Spot& spot, ToolMotion kind, Index pass) {
+    add(spot.position, spot.axis, kind, pass);
+    path_.poses.back().contact = spacing_ * spot.contact;
+  }
   void add(const Vec3& position, const Vec3& axis, ToolMotion kind, Index pass) {
     if (!path_.poses.empty()) arclength_ += spacing_ * distance(position, last_);
-    path_.poses.push_back({spacing_ * position, axis, {}, {}, pass, kind, arclength_});
+    path_.poses.push_back({spacing_ * position, spacing_ * position, axis, {}, {}, pass, kind, arclength_});
     last_ = position;
   }
   double arclength() const { return arclength_; }
 
-  /// Computes directions of travel and rotations.
-  void finish() {
+  /// Computes directions of travel, leans the axes and computes rotations.
+  void finish(double lead, double tilt) {
     std::vector<ToolPose>& poses = path_.poses;
+    for (std::size_t k = 0; k < poses.size(); ++k) poses[k].travel = travel(k);
+    for (std::size_t k = poses.size(); k-- > 1;) {  // along the axis: the direction of the pass that begins there
+      if (poses[k - 1].kind != ToolMotion::approach) continue;
+      const Vec3 flat = poses[k].travel - dot(poses[k].travel, poses[k - 1].axis) * poses[k - 1].axis;
+      if (norm(flat) > 1e-6) poses[k - 1].travel = normalized(flat);
+    }
     for (std::size_t k = 0; k < poses.size(); ++k) {
-      poses[k].travel = travel(k);
+      const Vec3 normal = poses[k].axis, ahead = poses[k].travel, left = cross(normal, ahead);
+      poses[k].axis = std::cos(tilt) * (std::cos(lead) * normal + std::sin(lead) * ahead) + std::sin(tilt) * left;
+      poses[k].travel = std::cos(lead) * ahead - std::sin(lead) * normal;
       poses[k].quaternion = rotation(poses[k].travel, poses[k].axis);
       if (k == 0) continue;
       double cosine = 0;
@@ -375,7 +429,7 @@ void add_poses(const Surface& surface, const PathDomain& domain, std::vector<Pas
   const double step = or_else(options.step, 0.25), tolerance = or_else(options.chord_error, 0.005);
   const SmoothNormals normals(domain.mesh, or_else(options.tool_radius, 0.5));
   const double clearance = or_else(options.clearance, 1), max_link = or_else(options.max_link, 3);
-  const Linker linker(surface, domain, normals, spacing, clearance);
+  const Linker linker(surface, domain, normals, spacing, clearance, options.offset / spacing);
 
   std::vector<TrackedPass> tracks(passes.size());
   detail::parallel_chunks(static_cast<Offset>(passes.size()), 1, options.threads, [&](Offset k, Offset) {
@@ -384,9 +438,17 @@ void add_poses(const Surface& surface, const PathDomain& domain, std::vector<Pas
     if (pass.curve.closed) points.push_back(points.front());
     TrackedPass& track = tracks[static_cast<std::size_t>(k)];
     track = {{}, pass.origin, pass.distance, pass.curve.closed};
-    for (const MeshPoint& point : simplified(domain.mesh, points, step, tolerance))
-      track.track.push_back(linker.spot(point));
+    points = simplified(domain.mesh, points, step, tolerance);
+    if (pass.curve.closed) points.pop_back();
+    for (const MeshPoint& point : points) linker.append(point, track.track);
+    if (pass.curve.closed && !track.track.empty()) track.track.push_back(track.track.front());
   });
+  std::erase_if(tracks, [](const TrackedPass& pass) { return pass.track.size() < 2; });
+  if (tracks.empty())
+    throw InvalidArgument(
+        "offset_too_large",
+        "a ball with the radius of the offset, " + detail::number(options.offset) + ", fits nowhere on the region",
+        "choose a smaller offset");
   if (options.one_way) align(tracks);
   tracks = by_nearest(std::move(tracks), !options.one_way);
   if (!options.one_way) exchange(tracks);
@@ -402,7 +464,7 @@ void add_poses(const Surface& surface, const PathDomain& domain, std::vector<Pas
     if (k == 0) {
       if (linker.can_rise(start)) {
         writer.add(linker.lifted(start), start.axis, ToolMotion::approach, number);
-        writer.add(start.position, start.axis, ToolMotion::approach, number);
+        writer.add(start, ToolMotion::approach, number);
       }
     } else {
       const Spot& end = tracks[k - 1].track.back();
@@ -412,8 +474,7 @@ void add_poses(const Surface& surface, const PathDomain& domain, std::vector<Pas
       if (!along && !over) along = linker.on_surface(end, start, unlimited);
       if (along) {
         ++path.surface_links;
-        for (std::size_t i = 1; i < along->size(); ++i)
-          writer.add((*along)[i].position, (*along)[i].axis, ToolMotion::link, number);
+        for (std::size_t i = 1; i < along->size(); ++i) writer.add((*along)[i], ToolMotion::link, number);
       } else if (over) {
         ++path.lifted_links;
         writer.add(over->front(), end.axis, ToolMotion::retreat, number);
@@ -422,7 +483,7 @@ void add_poses(const Surface& surface, const PathDomain& domain, std::vector<Pas
           const Vec3 mixed = (1 - share) * end.axis + share * start.axis;
           writer.add((*over)[i], norm(mixed) > 1e-3 ? normalized(mixed) : start.axis, ToolMotion::link, number);
         }
-        writer.add(start.position, start.axis, ToolMotion::approach, number);
+        writer.add(start, ToolMotion::approach, number);
       } else {
         ++path.missing_links;
         rise(end, number);
@@ -431,16 +492,16 @@ void add_poses(const Surface& surface, const PathDomain& domain, std::vector<Pas
     const std::size_t begin = path.poses.size();
     double before = writer.arclength();
     for (std::size_t i = 0; i < pass.track.size(); ++i) {
-      writer.add(pass.track[i].position, pass.track[i].axis, ToolMotion::pass, number);
+      writer.add(pass.track[i], ToolMotion::pass, number);
       if (i == 0) before = writer.arclength();
     }
     path.passes.push_back(
         {begin, path.poses.size(), pass.closed, pass.origin, spacing * pass.distance, writer.arclength() - before});
     path.pass_length += path.passes.back().length;
   }
-  if (!tracks.empty()) rise(tracks.back().track.back(), static_cast<Index>(tracks.size()) - 1);
+  rise(tracks.back().track.back(), static_cast<Index>(tracks.size()) - 1);
   path.link_length = writer.arclength() - path.pass_length;
-  writer.finish();
+  writer.finish(options.lead, options.tilt);
 }
 
 }  // namespace ahm

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numbers>
 #include <numeric>
+#include <optional>
 #include <string>
 
 #include "ahm/error.hpp"
@@ -24,8 +26,8 @@ using exact::MeshPoint;
 
 constexpr double no_height = std::numeric_limits<double>::quiet_NaN();
 
-/// Points of a seed curve that are farther than this from the surface are rejected, in spacings.
-constexpr double largest_seed_distance = 0.5;
+/// Points of a curve that are farther than this from the surface are rejected, in spacings.
+constexpr double largest_curve_distance = 0.5;
 
 void check_positive(const std::string& name, double value) {
   if (!(value > 0 && std::isfinite(value)))
@@ -38,8 +40,12 @@ void check(const ToolPathOptions& o) {
                                     {"chord_error", o.chord_error},
                                     {"tool_radius", o.tool_radius},
                                     {"clearance", o.clearance},
-                                    {"max_link", o.max_link}})
+                                    {"max_link", o.max_link},
+                                    {"offset", o.offset}})
     if (value != 0) check_positive(name, value);
+  for (const auto& [name, angle] : {std::pair{"lead", o.lead}, {"tilt", o.tilt}})
+    if (!(std::abs(angle) < std::numbers::pi / 2))
+      throw InvalidArgument(std::string(name) + " is " + detail::number(angle) + "; it must lie within (-pi/2, pi/2)");
 }
 
 /// The longest diagonal of the bounding box.
@@ -56,7 +62,7 @@ void keep_disc(const Surface& surface, const ToolPathRegion::Disc& disc, double 
                std::vector<bool>& kept) {
   check_positive("the radius of the region", disc.radius);
   const PathDomain domain(mesh);
-  const auto center = domain.locator.nearest((1 / spacing) * surface.position(disc.center));
+  const auto center = FaceLocator(domain.mesh).nearest((1 / spacing) * surface.position(disc.center));
   std::fill(kept.begin(), kept.end(), false);
   if (!center) return;
   exact::ExactOptions options;
@@ -142,13 +148,31 @@ std::vector<MeshCurve> longest_loops(const PathDomain& domain) {
 
 /// A curve in space, moved to the mesh.
 MeshCurve on_mesh(const PathDomain& domain, std::span<const Vec3> points, bool closed, double spacing) {
+  const FaceLocator locator(domain.mesh);
   std::vector<MeshPoint> found;
   for (const Vec3& p : points)
-    if (const auto point = domain.locator.nearest((1 / spacing) * p)) found.push_back(*point);
+    if (const auto point = locator.nearest((1 / spacing) * p)) found.push_back(*point);
   if (found.size() < 2)
     throw InvalidArgument("seed_off_surface", "the seed curve does not lie in the region",
                           "choose a curve on the part of the surface that is covered");
   return joined_curve(domain, found, closed && found.size() == points.size());
+}
+
+/// The points of a curve, joined on the surface.
+/// @param name  of the curve, for messages: "seed"
+SurfaceCurve drawn_curve(const Surface& surface, std::span<const Vec3> positions, bool closed, double spacing,
+                         const std::string& name) {
+  std::vector<CurvePoint> points;
+  for (std::size_t k = 0; k < positions.size(); ++k) {
+    const double away = surface.closest_point(positions[k]).distance;
+    if (away > largest_curve_distance * spacing)
+      throw InvalidArgument(name + "_off_surface",
+                            "point " + std::to_string(k) + " of the " + name + " curve is " + detail::number(away) +
+                                " from the surface, more than half of the spacing",
+                            "use points on the surface");
+    points.emplace_back(positions[k]);
+  }
+  return draw_curve(surface, points, {.closed = closed});
 }
 
 struct SeedFinder {
@@ -180,30 +204,27 @@ struct SeedFinder {
     return result;
   }
   std::vector<MeshCurve> operator()(const CurveSeed& curve) const {
-    std::vector<CurvePoint> points;
-    for (std::size_t k = 0; k < curve.points.size(); ++k) {
-      const double away = surface.closest_point(curve.points[k]).distance;
-      if (away > largest_seed_distance * spacing)
-        throw InvalidArgument("seed_off_surface",
-                              "point " + std::to_string(k) + " of the seed curve is " + detail::number(away) +
-                                  " from the surface, more than half of the spacing",
-                              "use points on the surface");
-      points.emplace_back(curve.points[k]);
-    }
-    const SurfaceCurve drawn = draw_curve(surface, points, {.closed = curve.closed});
+    const SurfaceCurve drawn = drawn_curve(surface, curve.points, curve.closed, spacing, "seed");
     return {on_mesh(domain, drawn.points, curve.closed, spacing)};
   }
   std::vector<MeshCurve> operator()(const LineSeed& line) const {
     const double length = extent(domain.mesh) * spacing;
+    std::optional<ExactGeodesics> geodesics;
+    if (surface.faces().size() > 0) geodesics.emplace(surface);
     std::vector<Vec3> points;
     for (const double side : {-1.0, 1.0}) {
       std::vector<Vec3> half;
-      if (surface.faces().size() > 0) {
-        const ExactGeodesics geodesics(surface);
-        for (const MeshPoint& p : geodesics.trace(line.point, side * line.direction, length).points)
-          half.push_back(geodesics.position(p));
-      } else {
-        half = trace_line(surface, line.point, side * line.direction, length).points;
+      try {
+        if (geodesics)
+          for (const MeshPoint& p : geodesics->trace(line.point, side * line.direction, length).points)
+            half.push_back(geodesics->position(p));
+        else
+          half = trace_line(surface, line.point, side * line.direction, length).points;
+      } catch (const InvalidArgument& e) {  // on the boundary, one side leaves the surface
+        if (side > 0 && points.empty())
+          throw InvalidArgument("seed_off_surface", std::string("the seed line has no length: ") + e.what(),
+                                "use a direction along the surface");
+        continue;
       }
       if (side < 0) std::reverse(half.begin(), half.end());
       points.insert(points.end(), half.begin() + (side > 0 && !points.empty() ? 1 : 0), half.end());
@@ -253,12 +274,25 @@ FaceMesh region_mesh(const Surface& surface, const ToolPathRegion& region, doubl
     }
     keep(mesh, kept);
   }
-  if (!(extent(mesh) >= 1))
+  const auto check_extent = [&] {
+    if (extent(mesh) >= 1) return;
     throw InvalidArgument("spacing_too_large",
                           "the spacing, " + detail::number(spacing) + ", is larger than the region, " +
                               detail::number(spacing * extent(mesh)) + " across",
                           "choose a smaller spacing");
+  };
+  check_extent();
   mesh = refined(mesh, longest);
+  for (const ToolPathRegion::Enclosure& enclosure : region.enclosures) {
+    const PathDomain domain(std::move(mesh));
+    const SurfaceCurve drawn = drawn_curve(surface, enclosure.points, true, spacing, "region");
+    const MeshCurve curve = on_mesh(domain, drawn.points, true, spacing);
+    if (!curve.closed)
+      throw InvalidArgument("region_off_surface", "the region curve leaves the part that the other conditions select",
+                            "draw the curve there");
+    mesh = enclosed_part(domain, curve, enclosure.outside);
+    check_extent();
+  }
   if (region.disc) {
     std::vector<bool> kept(mesh.size());
     keep_disc(surface, *region.disc, spacing, mesh, kept);

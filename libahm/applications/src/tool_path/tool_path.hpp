@@ -13,6 +13,11 @@ namespace ahm {
 /// @throws InvalidArgument (as `tool_path`)
 FaceMesh region_mesh(const Surface& surface, const ToolPathRegion& region, double spacing, double longest);
 
+/// The part of a mesh that a closed curve encloses: all parts into which it divides its component, except for the largest.
+/// @param outside  the largest part and the other components instead
+/// @throws InvalidArgument (fault "region_not_enclosed": the curve does not divide its component)
+FaceMesh enclosed_part(const PathDomain& domain, const MeshCurve& curve, bool outside);
+
 /// Puts passes in an order, joins them and computes the poses, in world units.
 void add_poses(const Surface& surface, const PathDomain& domain, std::vector<PassCurve> passes,
                const ToolPathOptions& options, ToolPath& path);

@@ -29,7 +29,8 @@ void append_decimals(std::string& text, double value) {
   text.append(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);
 }
 
-void write_obj_lines(const std::filesystem::path& path, std::span<const Vec3> points, std::span<const Index> begin) {
+void write_obj_lines(const std::filesystem::path& path, std::span<const Vec3> points, std::span<const Index> begin,
+                     std::span<const std::string> groups) {
   std::string text = "# curve by libahm\n";
   for (const Vec3& p : points) {
     text += 'v';
@@ -39,6 +40,7 @@ void write_obj_lines(const std::filesystem::path& path, std::span<const Vec3> po
   for (std::size_t k = 0; k < begin.size(); ++k) {
     const Index end = k + 1 < begin.size() ? begin[k + 1] : static_cast<Index>(points.size());
     if (begin[k] == end) continue;
+    if (!groups.empty() && (k == 0 || groups[k] != groups[k - 1])) text += "g " + groups[k] + '\n';
     text += 'l';
     for (Index i = begin[k]; i < end; ++i) text += ' ' + std::to_string(i + 1);
     text += '\n';

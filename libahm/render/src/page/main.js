@@ -92,8 +92,8 @@ Ahm.Viewer = class {
     const source = this.stage.source_position;
     const [sx, sy] = source ? this.stage.pixel(source.toArray()) : [-1e9, 0];
     const is_source = (this.tool === "map" || this.tool === "decal") && Math.hypot(x - sx, y - sy) < (event.pointerType === "touch" ? 26 : 13);
-    if (!is_source && this.tool !== "stroke") return;
-    if (this.tool === "stroke" && !this.stage.pick(x, y)) return;
+    if (!is_source && !this.is_drawing()) return;
+    if (this.is_drawing() && !this.stage.pick(x, y)) return;
     this.dragging = true;
     this.picked = [];
     this.stage.controls.enabled = false;
@@ -112,8 +112,10 @@ Ahm.Viewer = class {
     });
   }
 
+  is_drawing() { return this.tool === "stroke" || this.tool === "whole"; }
+
   drag(hit) {
-    if (this.tool === "stroke") return this.add_to_stroke(hit);
+    if (this.is_drawing()) return this.add_to_stroke(hit);
     this.stage.set_source(hit.position, []);
     this.wanted = hit;
     if (!this.following) this.follow();
@@ -143,12 +145,17 @@ Ahm.Viewer = class {
     if (!this.dragging) return;
     this.dragging = false;
     this.stage.controls.enabled = true;
-    if (this.tool === "stroke") this.ask_stroke(this.picked.map((h) => h.source));
+    const drawn = this.picked.map((h) => h.source);
+    if (this.tool === "stroke") this.ask_stroke(drawn);
+    if (this.tool === "whole" && drawn.length > 1) {
+      this.seed = drawn;
+      this.ask_whole();
+    }
   }
 
   click(hit) {
     if (this.tool === "path") return this.ask_path(hit);
-    if (this.tool === "stroke") return;
+    if (this.is_drawing()) return;
     this.wanted = null;
     return this.ask_map(hit.source);
   }
@@ -293,6 +300,24 @@ Ahm.Viewer = class {
     this.element("tool_hint").textContent = "length " + Ahm.number(this.panel.length_of(answer.length), 4) + ", " + (100 * answer.covered).toFixed(1) + " % on the surface";
   }
 
+  // The tool path over the whole surface, from the drawn seed curve if there is one.
+  ask_whole() {
+    return this.attempt(async () => {
+      const spacing = Number(Ahm.number(this.panel.length_of(Math.pow(2, Number(this.element("whole_spacing").value))), 2));
+      this.element("whole_spacing_text").textContent = spacing;
+      const request = { spacing: spacing };
+      if (this.seed) request.curve = this.seed;
+      this.panel.say("computing …");
+      const answer = await (await this.server.post("whole", request)).json(), scale = this.panel.length_of(1);
+      if (this.tool !== "whole") return;
+      this.stage.set_marks({ curve: answer.passes.points, pieces: answer.passes.pieces, links: answer.links });
+      this.offer(answer.command, { what: "whole", request: request });
+      const numbers = [answer.length * scale, answer.link_length * scale, answer.area * scale * scale].map((x) => Ahm.number(x, 4));
+      this.element("tool_hint").textContent = "passes " + numbers[0] + ", links " + numbers[1] + " (blue), area " + numbers[2] + ", covered " + (100 * answer.covered).toFixed(1) + " %";
+      this.panel.say("");
+    });
+  }
+
   // Draws the image on the current map, which must start at a point.
   place_decal() {
     const width = this.stage.surface.scale ? 0.5 * Math.pow(2, Number(this.element("decal_size").value)) : 1;
@@ -332,14 +357,17 @@ Ahm.Viewer = class {
     const hints = {
       map: "click a point, or drag the red point", path: "click two points for the shortest path between them",
       stroke: "draw a curve on the surface", decal: "choose an image; drag the red point to move it",
-      coverage: "click a point for a tool path around it"
+      coverage: "click a point for a tool path around it", whole: "draw a curve, to which the passes are parallel"
     };
     this.element("tool_hint").textContent = hints[name];
     this.element("decal_options").hidden = name !== "decal";
     this.element("coverage_options").hidden = name !== "coverage";
+    this.element("whole_options").hidden = name !== "whole";
+    this.seed = null;
     this.stage.set_marks(this.stage.map || {});
     if (this.made_map) this.offer(this.stage.map.command, this.made_map);
     this.place_decal();
+    if (name === "whole") this.ask_whole();
     // Decals and coverage paths require a map that starts at a point.
     if ((name === "decal" || name === "coverage") && this.request && this.request.points) this.ask_map(this.source || this.request.points[0]);
     else if (name === "coverage") this.attempt(() => this.ask_coverage());
@@ -383,6 +411,8 @@ Ahm.Viewer = class {
     for (const id of ["method", "variant", "t_coef", "radius", "u_axis"]) element(id).addEventListener("change", method_changed);
     for (const id of ["coverage_radius", "coverage_spacing", "coverage_pattern"])
       element(id).addEventListener("change", () => this.attempt(() => this.ask_coverage()));
+    element("whole_spacing").addEventListener("change", () => this.ask_whole());
+    element("whole_auto").addEventListener("click", () => { this.seed = null; this.ask_whole(); });
     for (const id of ["decal_size", "decal_turn"]) element(id).addEventListener("input", () => this.place_decal());
     element("decal_file").addEventListener("change", () => this.load_decal(element("decal_file").files[0]));
     element("export").addEventListener("click", () => this.export_made());

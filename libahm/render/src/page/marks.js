@@ -19,7 +19,7 @@ Ahm.make_source = function (axes, ink) {
   return group;
 };
 
-Ahm.ribbon_material = (viewport) => new THREE.ShaderMaterial({
+Ahm.ribbon_material = (viewport, color) => new THREE.ShaderMaterial({
   uniforms: { viewport: viewport, width: { value: 3 } }, side: THREE.DoubleSide,
   vertexShader: `
     attribute vec3 other;
@@ -35,7 +35,7 @@ Ahm.ribbon_material = (viewport) => new THREE.ShaderMaterial({
       a.xy += side * width * vec2(-way.y, way.x) / viewport * a.w;
       gl_Position = a;
     }`,
-  fragmentShader: "void main() { gl_FragColor = vec4(0.88, 0.08, 0.12, 1.0); }"
+  fragmentShader: "void main() { gl_FragColor = vec4(" + color + ", 1.0); }"
 });
 
 // A curve. `points`: positions; `pieces`: index of the first point of each piece.

@@ -17,7 +17,8 @@ Ahm.Stage = class {
     this.pieces = null;  // parts of torn triangles
     this.coarse = null;  // coarse mesh that is drawn while the camera moves
     this.ink = new THREE.MeshBasicMaterial({ color: 0x19191e });
-    this.ribbons = Ahm.ribbon_material(this.viewport);
+    this.ribbons = Ahm.ribbon_material(this.viewport, "0.88, 0.08, 0.12");
+    this.link_ribbons = Ahm.ribbon_material(this.viewport, "0.08, 0.35, 0.9");
     this.marks = new THREE.Group();
     this.source = new THREE.Group();
     this.source_position = null;
@@ -170,6 +171,7 @@ Ahm.Stage = class {
     this.marks.remove(...this.marks.children);
     this.dots = [];
     if (given.curve && given.curve.length > 1) this.marks.add(Ahm.make_ribbon(given.curve, given.pieces || [0], this.ribbons));
+    if (given.links) this.marks.add(Ahm.make_ribbon(given.links.points, given.links.pieces, this.link_ribbons));
     for (const dot of given.dots || []) {
       const ball = Ahm.make_source([], this.ink).children[0];
       ball.position.fromArray(dot);

@@ -19,6 +19,7 @@
 
 #include "ahm/applications/coverage.hpp"
 #include "ahm/applications/decal.hpp"
+#include "ahm/applications/tool_path.hpp"
 #include "ahm/error.hpp"
 #include "ahm/image.hpp"
 #include "ahm/io/geometry.hpp"
@@ -47,9 +48,11 @@ struct SessionOptions {
   /// Writes a path, a tool path, or a decal to a file.
   std::function<void(const std::filesystem::path&, const std::vector<Vec3>&)> write_path = {};
   std::function<void(const std::filesystem::path&, const CoveragePath&)> write_coverage = {};
+  std::function<void(const std::filesystem::path&, const ToolPath&)> write_whole = {};
   std::function<void(const std::filesystem::path&, const InverseMap&, const DecalOptions&, const Image&)> write_decal =
       {};
-  /// Extensions that these functions support, without the dot, for each kind of result: map, stroke, path, coverage, decal.
+  /// Extensions that these functions support, without the dot, for each kind of result: map, stroke, path, coverage, whole,
+  /// decal.
   std::map<std::string, std::vector<std::string>> formats = {};
   std::function<std::string(const Error&)> worded = {};  ///< formats error messages; empty: what()
   /// Receives the progress of requests: `Progress::report`. Empty: no reports.
@@ -81,9 +84,10 @@ std::string spec(const Surface& surface, const SurfacePoint& point);
 /// | stroke   | "points": along a curve                                | bundle of the map, with the curve             |
 /// | path     | "from", "to"                                           | JSON: "points", "length", "command"           |
 /// | coverage | "source", "coverage_radius", "spacing", "pattern"      | JSON: "points", "pieces", "length", "covered" |
+/// | whole    | "spacing", optional "curve": points of the seed       | JSON: "passes", "links", lengths, "covered"   |
 /// | export   | "what", "format", and the members of such a request    | the file that the command writes              |
 ///
-/// "what" is "map", "stroke", "path", "coverage" or "decal". A decal requires "source", "image" (a PNG or JPEG file in base64), "size" (of
+/// "what" is "map", "stroke", "path", "coverage", "whole" or "decal". A decal requires "source", "image" (a PNG or JPEG file in base64), "size" (of
 /// the longer side) and "angle" (degrees).
 ///
 /// A newer request of the same client cancels an older one of the same kind. Maps and strokes are one kind; paths and tool paths are the

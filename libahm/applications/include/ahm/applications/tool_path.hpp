@@ -34,14 +34,14 @@ struct CurveSeed {
   bool closed = false;
 };
 /// The passes are parallel to the geodesic line through a point, in both directions to the boundary. On closed surfaces it
-/// ends after the length of the diagonal of the bounding box.
+/// ends after the length of the diagonal of the bounding box. From a point of the boundary it runs to one side.
 struct LineSeed {
   SurfacePoint point;
   Vec3 direction;  ///< in space; projected to the surface
 };
 using ToolPathSeed = std::variant<AutomaticSeed, PlaneSeed, BoundarySeed, CurveSeed, LineSeed>;
 
-/// The part of the surface to cover: the triangles that fulfill all conditions.
+/// The part of the surface to cover, which fulfills all conditions.
 struct ToolPathRegion {
   std::vector<bool> rows;  ///< one per row: triangles whose corners are all true; empty: all rows
   /// Triangles whose normals are at most this far from a direction.
@@ -56,6 +56,13 @@ struct ToolPathRegion {
     double radius;  ///< world units
   };
   std::optional<Disc> disc;
+  /// One side of a curve that is joined as by `draw_curve` and closed. The curve divides its component. The largest part is
+  /// the outside, the others are the inside. Other components are outside.
+  struct Enclosure {
+    std::vector<Vec3> points;  ///< at least 3, at most half a spacing from the surface, world units
+    bool outside = false;
+  };
+  std::vector<Enclosure> enclosures;
 };
 
 struct ToolPathOptions {
@@ -63,11 +70,16 @@ struct ToolPathOptions {
   ToolPathSeed seed = AutomaticSeed{};
   ToolPathRegion region = {};
   double step = 0;  ///< longest distance between poses of a pass, world units; 0: a quarter of the spacing
-  double chord_error =
-      0;  ///< poses may be left out where the path stays this close to the chord, world units; 0: none are
+  /// Largest distance of a pass from the chords between its poses, world units; 0: a 200th of the spacing.
+  double chord_error = 0;
   double tool_radius = 0;  ///< the tool axis is the mean normal within this radius, world units; 0: half of the spacing
-  double clearance = 0;    ///< height of lifted links over the surface, world units; 0: the spacing
-  double max_link = 0;     ///< longest link on the surface; longer links are lifted. World units; 0: three spacings
+  double lead = 0;  ///< angle by which the tool axis leans toward the travel; < 0: lag. Radians, within (-pi/2, pi/2)
+  double tilt = 0;  ///< angle by which it leans to the left of the travel, radians, within (-pi/2, pi/2)
+  /// Distance of the poses from the surface, world units: the path of the center of a ball of this radius. The axis points
+  /// along the mean normal, but in concave places the ball does not enter farther than it fits: loops are removed.
+  double offset = 0;
+  double clearance = 0;  ///< height of lifted links over the surface, world units; 0: the spacing
+  double max_link = 0;   ///< longest link on the surface; longer links are lifted. World units; 0: three spacings
   bool one_way =
       false;  ///< all passes run in the direction of the seed; false: directions alternate to shorten the links
   Progress progress = {};
@@ -83,8 +95,9 @@ enum class ToolMotion {
 
 /// A pose of the tool.
 struct ToolPose {
-  Vec3 position;  ///< on the surface, except for lifted links, approach and retreat; world units
-  Vec3 axis;      ///< unit vector away from the surface: the mean normal within the tool radius
+  Vec3 position;  ///< at the offset from the surface, except for lifted links, approach and retreat; world units
+  Vec3 contact;   ///< the point of the surface where the pose is; the position on lifted links, approach and retreat
+  Vec3 axis;      ///< unit vector away from the surface: the mean normal within the tool radius, with lead and tilt
   Vec3 travel;    ///< unit vector perpendicular to the axis: direction of travel
   /// Rotation (w, x, y, z) that takes z to `axis` and x to `travel`. Signs are such that consecutive poses are close.
   std::array<double, 4> quaternion;
@@ -128,7 +141,8 @@ struct ToolPath {
 /// angle to the cut locus, one pass along the cut locus replaces the pair that would cover twice, or fills the gap. The same
 /// is done along boundaries. Passes are ordered by their nearest ends and improved by 2-opt exchanges.
 /// @throws InvalidArgument (a value that is not finite or out of range; faults "spacing_too_large": larger than the
-/// region, "seed_off_surface", "region_empty"; a surface without positions or triangles), InvalidGeometry (faces without
+/// region, "seed_off_surface", "region_off_surface", "region_not_enclosed": a curve that does not divide the surface,
+/// "region_empty"; a surface without positions or triangles), InvalidGeometry (faces without
 /// area, needles: as `exact::exact_map`), ResourceExhausted, Cancelled
 ToolPath tool_path(const Surface& surface, const ToolPathOptions& options);
 

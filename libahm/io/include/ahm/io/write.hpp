@@ -38,8 +38,10 @@ bool writes_for_viewers(const std::filesystem::path& path, const std::string& ex
 /// Writes curves as lines (`l`) of an .obj file, in double precision. The file appears when it is complete, or not at all.
 /// @param points  points of all curves, concatenated
 /// @param begin   ascending: index of the first point of each curve; curves without points are skipped
+/// @param groups  name of the group (`g`) of each curve; empty: no groups
 /// @throws IoError
-void write_obj_lines(const std::filesystem::path& path, std::span<const Vec3> points, std::span<const Index> begin);
+void write_obj_lines(const std::filesystem::path& path, std::span<const Vec3> points, std::span<const Index> begin,
+                     std::span<const std::string> groups = {});
 
 /// Checks, before a long computation, that `write` can succeed: the extension is known, and the directory exists and is writable.
 /// @throws IoError
