@@ -16,6 +16,7 @@
 #include "ahm/applications/tool_path.hpp"
 #include "ahm/cholesky/cholesky.hpp"
 #include "ahm/cholesky/conjugate_gradient.hpp"
+#include "ahm/cholesky/eigenpairs.hpp"
 #include "ahm/cholesky/linear_solver.hpp"
 #include "ahm/error.hpp"
 #include "ahm/fields/distance.hpp"
