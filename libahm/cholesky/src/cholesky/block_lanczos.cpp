@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::MatrixXd, Eigen::VectorXd;
 
-/// Largest residual |K^-1 x - mu x| / mu of an accepted eigenvector. Each further block reduces it by about a factor of ten.
+/// Largest residual |K^-1 x - mu x| / mu of an accepted eigenvector. One more block reduces it by about a factor of ten.
 constexpr double residual_tolerance = 1e-11;
 constexpr Offset rows_at_once = 4096;     ///< rows of a chunk; it stays in the cache
 constexpr Offset columns_of_panel = 128;  ///< columns of the basis in one piece of memory
