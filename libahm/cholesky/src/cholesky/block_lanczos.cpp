@@ -28,14 +28,15 @@ using Block = std::vector<double>;
 /// Orthonormal columns, in panels of memory, and products with them.
 class Basis {
  public:
-  Basis(Offset n, unsigned threads) : n_(n), threads_(threads) {}
+  /// @param panel  columns of a panel, a multiple of the block
+  Basis(Offset n, unsigned threads, Offset panel = columns_of_panel) : n_(n), panel_(panel), threads_(threads) {}
 
   Offset size() const { return size_; }
 
   void append(const Block& Q) {
-    if (size_ % columns_of_panel == 0)
-      panels_.push_back(std::make_unique_for_overwrite<double[]>(static_cast<std::size_t>(n_ * columns_of_panel)));
-    std::copy(Q.begin(), Q.end(), panels_.back().get() + size_ % columns_of_panel * n_);
+    if (size_ % panel_ == 0)
+      panels_.push_back(std::make_unique_for_overwrite<double[]>(static_cast<std::size_t>(n_ * panel_)));
+    std::copy(Q.begin(), Q.end(), panels_.back().get() + size_ % panel_ * n_);
     size_ += b;
   }
 
@@ -74,13 +75,13 @@ class Basis {
   template <class Body>
   void for_each_panel(Offset first, Offset last, const Body& body) const {
     for (Offset column = first; column < last;) {
-      const Offset inside = column % columns_of_panel, count = std::min(columns_of_panel - inside, last - column);
-      body(panels_[static_cast<std::size_t>(column / columns_of_panel)].get() + inside * n_, column, count);
+      const Offset inside = column % panel_, count = std::min(panel_ - inside, last - column);
+      body(panels_[static_cast<std::size_t>(column / panel_)].get() + inside * n_, column, count);
       column += count;
     }
   }
 
-  Offset n_, size_ = 0;
+  Offset n_, panel_, size_ = 0;
   unsigned threads_;
   std::vector<std::unique_ptr<double[]>> panels_;
 };
@@ -162,7 +163,7 @@ class BlockLanczos {
   /// Replaces W by an orthonormal block of the same span, by the eigenvectors of W^T W [SW02]. Once it is accurate to the square root of
   /// the precision, twice to the precision.
   Normalized normalize(Block& W) {
-    Basis columns(n_, threads_);
+    Basis columns(n_, threads_, b);
     columns.append(W);
     const MatrixXd gram = columns.coefficients(W);
     const VectorXd scale = gram.diagonal().unaryExpr([](double g) { return g > 0 ? std::sqrt(g) : 1; });
