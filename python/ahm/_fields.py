@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Union
+from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Tuple, Union
 
 import numpy as np
 
@@ -198,7 +198,7 @@ def curvature(surface: SurfaceLike, *, threads: int = 0, progress: Progress = No
 
 
 class Operators(NamedTuple):
-    """The operators of the affine heat method as scipy matrices. Returned by `operators`.
+    """Mass, Laplacians, gradient and eigenpairs as scipy matrices. Returned by `operators`.
 
     Matrices have one row per vertex of the graph, and are in units of the graph: a length of 1 is `length_unit` world units.
     """
@@ -211,6 +211,11 @@ class Operators(NamedTuple):
     length_unit: float  #: length of one graph unit, world units
     vertex_of_row: np.ndarray  #: (rows,) int32 vertex of every row of the input; -1: removed
     row_of_vertex: np.ndarray  #: (n,) int32 row of every vertex; -1: the vertex is not in the input
+    #: d matrices, (n, n): gradient[a] @ u is the component of the gradient of u along axis a of the frame of each vertex
+    gradient: Tuple[csr_matrix, ...]
+    frames: Optional[np.ndarray]  #: (n, 3, 3) x axis, y axis and normal of every vertex in space; None without frames in space
+    eigenvalues: Optional[np.ndarray]  #: (k_eig,) smallest eigenvalues of L x = lambda M x, ascending; None without `k_eig`
+    eigenvectors: Optional[np.ndarray]  #: (n, k_eig) their vectors X, with X^T M X = I
 
     @property
     def A(self) -> csr_matrix:
@@ -233,25 +238,36 @@ def _plus(mass: Any, tau: np.ndarray, laplacian: Any) -> Any:
     return (mass + diags(tau) @ laplacian).tocsr()
 
 
-def operators(surface: SurfaceLike, *, t_coef: float = 1.0) -> Operators:
-    """The matrices of the heat method on a surface, by vertices of its graph (`Operators.vertex_of_row`).
+def operators(surface: SurfaceLike, *, t_coef: float = 1.0, k_eig: Optional[int] = None, threads: int = 0,
+              progress: Progress = None) -> Operators:
+    """Mass, Laplacians, gradient and eigenpairs of a surface, by vertices of its graph (`Operators.vertex_of_row`).
 
     surface : a `Surface`, or what `ahm.surface` takes.
     t_coef : factor of the diffusion time tau = t_coef h^2, with h the mean edge length of the component; > 0.
+    k_eig : number of eigenpairs, at most n; None: none. They are computed by block Lanczos on libahm's own factorization.
+    threads : number of threads; 0: one per core. No result depends on it.
+    progress : as in `LogMapSolver`.
+
+    The gradient is the least-squares fit to the differences along the edges of each star, with the positions of the neighbors in the
+    frame of the vertex (`e_ij`), as in DiffusionNet [SACO22]. It is exact for linear functions on flat surfaces. Where the edges do
+    not span the tangent space, it is the shortest such vector.
 
     >>> import ahm
-    >>> ops = ahm.operators(ahm.shapes.sphere(2))
+    >>> ops = ahm.operators(ahm.shapes.sphere(3), k_eig=9)
     >>> ops.A.shape, bool(abs(ops.laplacian.sum(axis=1)).max() < 1e-12)
-    ((162, 162), True)
+    ((642, 642), True)
+    >>> (ops.eigenvalues / ops.length_unit**2).round(1) + 0.0     # l (l + 1)
+    array([0., 2., 2., 2., 6., 6., 6., 6., 6.])
 
     Raises ValueError naming the argument; ImportError without scipy.
     """
-    from scipy.sparse import bsr_matrix, coo_matrix, csr_matrix, diags
+    from scipy.sparse import bsr_matrix, coo_matrix, csr_matrix, diags, triu
 
     on = as_body(surface)
     factor = arguments.real(t_coef, "t_coef", positive=True)
     indptr, indices, weights, logs, turns, masses = on._body.csr()
     n, d = len(masses), logs.shape[1]
+    count = None if k_eig is None else arguments.integer(k_eig, "k_eig", 1, n)
     row = np.repeat(np.arange(n), np.diff(indptr))
     degree = np.bincount(row, weights, n)
     laplacian = (diags(degree) - coo_matrix((weights, (row, indices)), (n, n))).tocsr()
@@ -264,6 +280,30 @@ def operators(surface: SurfaceLike, *, t_coef: float = 1.0) -> Operators:
         weighted = bsr_matrix((weights[:, None, None] * turns, indices, indptr), (n * d, n * d))
         connection = csr_matrix(diags(np.repeat(degree, d)) - weighted)
     tau = _core.diffusion_times(on._body, factor)
+    values = vectors = None
+    if count is not None:
+        upper = triu(laplacian, format="csc")
+        upper.sort_indices()
+        with reporting(progress) as report:
+            values, columns = _core.smallest_eigenpairs(upper.indptr.astype(np.int64), upper.indices.astype(np.int64), upper.data,
+                                                        masses, count, checked(threads=threads)["threads"], report)
+        vectors = columns.T
     return Operators(diags(masses).tocsr(), laplacian, connection, R, tau, on._body.length_unit,
-                     on._body.vertex_of_row(), on._body.row_of_vertex())
+                     on._body.vertex_of_row(), on._body.row_of_vertex(), _gradient(row, indices, logs, n), _frames(on),
+                     values, vectors)
 
+
+def _gradient(row: np.ndarray, neighbor: np.ndarray, logs: np.ndarray, n: int) -> Tuple[csr_matrix, ...]:
+    """g_i = argmin sum_j (<g, e_ij> - (u_j - u_i))^2, as one matrix per axis."""
+    from scipy.sparse import coo_matrix
+
+    d = logs.shape[1]
+    normal = np.stack([np.bincount(row, logs[:, a] * logs[:, b], n) for a in range(d) for b in range(d)], axis=1).reshape(n, d, d)
+    factors = np.einsum("eab,eb->ea", np.linalg.pinv(normal, rcond=1e-12, hermitian=True)[row], logs)
+    rows, columns = np.concatenate([row, row]), np.concatenate([neighbor, row])
+    return tuple(coo_matrix((np.concatenate([f, -f]), (rows, columns)), (n, n)).tocsr() for f in factors.T)
+
+
+def _frames(on: Any) -> Optional[np.ndarray]:
+    frames = on._body.frames()
+    return None if frames is None else frames[:, 1:]

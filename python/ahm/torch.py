@@ -23,14 +23,18 @@ from typing import Any, NamedTuple, Optional
 
 import numpy as np
 
+from . import _arguments as arguments
 from ._clouds import PointCloud
+from ._fields import operators as _operators
 from ._local_maps import LocalMaps as _Maps, local_maps
 from ._meshes import TriangleMesh
 from ._options import checked
+from ._progress import Progress
+from .typing import SurfaceLike
 
 torch: Any = importlib.import_module("torch")  # Any: checkers of types need not read torch
 
-__all__ = ["Edges", "LocalMaps", "edges"]
+__all__ = ["Edges", "LocalMaps", "Operators", "edges", "operators"]
 
 
 class Edges(NamedTuple):
@@ -63,6 +67,57 @@ def edges(maps: _Maps) -> Edges:
         transport = torch.from_numpy(np.conj(maps.transport.astype(np.float32).view(np.complex64)[:, 0]))
     log, distance, weight = (torch.from_numpy(values.astype(np.float32)) for values in (maps.log, maps.distance, maps.weight))
     return Edges(torch.from_numpy(maps.edge_index()), log, transport, distance, weight)
+
+
+class Operators(NamedTuple):
+    """Operators of a surface by rows, float32, world units. Returned by `operators`."""
+
+    mass: Any  #: (n,) area of every row
+    laplacian: Any  #: (n, n) sparse: (L u)_i = sum_j w_ij (u_i - u_j)
+    grad_x: Any  #: (n, n) sparse: component of the gradient along the x axis of the frame of each row
+    grad_y: Any  #: (n, n) sparse: component along the y axis
+    frames: Any  #: (n, 3, 3) x axis, y axis and normal of every row in space
+    eigenvalues: Any  #: (k_eig,) smallest eigenvalues of L x = lambda M x, ascending
+    eigenvectors: Any  #: (n, k_eig) their vectors X, with X^T M X = I
+
+
+def operators(surface: SurfaceLike, k_eig: int = 128, *, threads: int = 0, progress: Progress = None) -> Operators:
+    """The operators that networks such as DiffusionNet [SACO22] use, as tensors on the CPU.
+
+    surface : a mesh or a cloud. Every row must have a vertex of its own.
+    k_eig, threads, progress : as in `ahm.operators`.
+
+    >>> import ahm, ahm.torch
+    >>> ops = ahm.torch.operators(ahm.TriangleMesh(*ahm.shapes.sphere(2)), k_eig=8)
+    >>> ops.grad_x.shape, ops.eigenvectors.shape, ops.eigenvectors.dtype
+    (torch.Size([162, 162]), torch.Size([162, 8]), torch.float32)
+
+    Raises ValueError (rows without a vertex, rows at the same position, polygons with virtual vertices, no frames in space; k_eig).
+    """
+    made = _operators(surface, k_eig=k_eig, threads=threads, progress=progress)
+    vertex, unit, n = made.vertex_of_row, made.length_unit, len(made.tau)
+    missing = np.flatnonzero(vertex < 0)
+    if len(missing):
+        raise ValueError(f"surface: row {missing[0]} has no vertex; remove such rows first")
+    if len(np.unique(vertex)) < len(vertex):
+        raise ValueError("surface: several rows share one vertex; remove duplicate points first")
+    if len(vertex) < n:
+        vertices = arguments.counted(n - len(vertex), "vertex")
+        raise ValueError(f"surface: {vertices} of its graph are not in the input; use discretization='polygons'")
+    if made.frames is None or len(made.gradient) != 2:
+        raise ValueError("surface: this one has no frames in space; use a mesh or a cloud")
+
+    def dense(values: np.ndarray) -> Any:
+        return torch.from_numpy(np.ascontiguousarray(values, np.float32))
+
+    def sparse(matrix: Any) -> Any:
+        rows = matrix[vertex][:, vertex].tocoo()
+        place = torch.from_numpy(np.stack([rows.row, rows.col]).astype(np.int64))
+        return torch.sparse_coo_tensor(place, dense(rows.data), (n, n)).coalesce()
+
+    along_x, along_y = (sparse(matrix / unit) for matrix in made.gradient)
+    return Operators(dense(made.mass.diagonal()[vertex] * unit**2), sparse(made.laplacian), along_x, along_y,
+                     dense(made.frames[vertex]), dense(made.eigenvalues / unit**2), dense(made.eigenvectors[vertex] / unit))
 
 
 class LocalMaps:

@@ -1,6 +1,8 @@
 // Parallel transport, extension of scalars, distances and curvature, by rows.
 #include <utility>
+#include <vector>
 
+#include "ahm/cholesky/eigenpairs.hpp"
 #include "ahm/error.hpp"
 #include "ahm/fields/distance.hpp"
 #include "ahm/fields/vector_heat.hpp"
@@ -159,6 +161,19 @@ py::array taus(const BodyPtr& body, double t_coef) {
   return owned(compute([=] { return diffusion_times(ComponentScales(body->graph()), t_coef); }));
 }
 
+/// @param column_begin, rows, values  upper triangle of a symmetric matrix in compressed columns
+/// @return eigenvalues, (k,), and eigenvectors, (k, n)
+py::tuple smallest(const Offsets& column_begin, const Offsets& rows, const Doubles& values, const Doubles& masses,
+                   Offset count, unsigned threads, const py::object& report) {
+  const auto copy = [](const auto& array) { return std::vector(numbers(array).begin(), numbers(array).end()); };
+  const SparseUpper L{false, copy(column_begin), copy(rows), copy(values)};
+  const auto m = numbers(masses);
+  Eigenpairs found = compute(
+      report, masses, [=](const Progress& progress) { return smallest_eigenpairs(L, m, count, threads, progress); });
+  return py::make_tuple(owned(std::move(found.values)),
+                        owned<double>(std::move(found.vectors), {static_cast<py::ssize_t>(count), length(m)}));
+}
+
 py::tuple curvature(const BodyPtr& body, unsigned threads, const py::object& report) {
   if (body->graph().dimension() != 2 || !body->graph().frame(0))
     throw InvalidArgument("surface: this one has no tangent planes in space; use a mesh or a cloud");
@@ -180,6 +195,7 @@ void add_fields(py::module_& module) {
   module.def("heat_distance", &heat_distance);
   module.def("front_distance", &front_distance);
   module.def("diffusion_times", &taus);
+  module.def("smallest_eigenpairs", &smallest);
   module.def("curvature", &curvature);
 }
 

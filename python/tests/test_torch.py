@@ -63,6 +63,29 @@ def test_a_transform_fills_data_of_meshes_and_clouds(sphere):
     assert repr(copy.deepcopy(transform)) == "ahm.torch.LocalMaps(k=12, threads=0, method='auto')"
 
 
+def test_operators_are_by_rows_in_world_units(sphere):
+    """On a sphere of radius 300, by rows: eigenvalues l (l + 1) / r^2, orthonormal vectors, gradients of coordinates along the axes."""
+    for surface in (ahm.TriangleMesh(sphere.points * 300, sphere.faces), ahm.PointCloud(sphere.points * 300)):
+        ops = ahm.torch.operators(surface, k_eig=9)
+        expected = torch.tensor([0.0, 2, 2, 2, 6, 6, 6, 6, 6]) / 300**2
+        torch.testing.assert_close(ops.eigenvalues, expected, rtol=0.05, atol=1e-9)
+        X = ops.eigenvectors
+        torch.testing.assert_close(X.T @ (ops.mass[:, None] * X), torch.eye(9), rtol=0, atol=1e-4)
+        assert abs(float(ops.mass.sum()) / (4 * np.pi * 300**2) - 1) < 0.05
+        height = torch.from_numpy(surface.points[:, 2:].astype(np.float32))
+        found = torch.cat([torch.sparse.mm(G, height) for G in (ops.grad_x, ops.grad_y)], 1)
+        torch.testing.assert_close(found, ops.frames[:, :2, 2], rtol=0, atol=0.05)
+        torch.testing.assert_close(ops.frames.double(), torch.from_numpy(surface.frames), rtol=0, atol=1e-6)
+
+
+def test_operators_name_rows_that_have_no_vertex_of_their_own(plane, flat_surfaces):
+    positions, faces = plane
+    with pytest.raises(ValueError, match="row 143 has no vertex"):
+        ahm.torch.operators(ahm.TriangleMesh(np.vstack([positions, [[50.0, 50, 50]]]), faces), k_eig=4)
+    with pytest.raises(ValueError, match="not in the input"):
+        ahm.torch.operators(flat_surfaces["refined"], k_eig=4)
+
+
 def test_rows_without_a_vertex_have_no_edges(plane):
     positions, faces = plane
     data = ahm.torch.LocalMaps(radius=2.0)(as_data(np.vstack([positions, [[50.0, 50, 50]]]), faces))

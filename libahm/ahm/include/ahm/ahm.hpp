@@ -17,6 +17,7 @@
 #include "ahm/applications/tool_path_text.hpp"
 #include "ahm/cholesky/cholesky.hpp"
 #include "ahm/cholesky/conjugate_gradient.hpp"
+#include "ahm/cholesky/eigenpairs.hpp"
 #include "ahm/cholesky/linear_solver.hpp"
 #include "ahm/error.hpp"
 #include "ahm/fields/distance.hpp"

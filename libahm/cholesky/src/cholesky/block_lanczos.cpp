@@ -1,0 +1,221 @@
+#include "cholesky/block_lanczos.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <memory>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "ahm/util/parallel.hpp"
+#include "cholesky/blas.hpp"
+#include "cholesky/tall_products.hpp"
+
+namespace ahm {
+namespace {
+
+using Eigen::MatrixXd, Eigen::VectorXd;
+
+/// Largest residual |K^-1 x - mu x| / mu of an accepted eigenvector. One more block reduces it by about a factor of ten.
+constexpr double residual_tolerance = 1e-11;
+constexpr Offset rows_at_once = 4096;     ///< rows of a chunk; it stays in the cache
+constexpr Offset columns_of_panel = 128;  ///< columns of the basis in one piece of memory
+constexpr Offset b = lanczos_block;
+
+/// An n x b matrix, column major.
+using Block = std::vector<double>;
+
+/// Orthonormal columns, in panels of memory, and products with them.
+class Basis {
+ public:
+  /// @param panel  columns of a panel, a multiple of the block
+  Basis(Offset n, unsigned threads, Offset panel = columns_of_panel) : n_(n), panel_(panel), threads_(threads) {}
+
+  Offset size() const { return size_; }
+
+  void append(const Block& Q) {
+    if (size_ % panel_ == 0)
+      panels_.push_back(std::make_unique_for_overwrite<double[]>(static_cast<std::size_t>(n_ * panel_)));
+    std::copy(Q.begin(), Q.end(), panels_.back().get() + size_ % panel_ * n_);
+    size_ += b;
+  }
+
+  /// V^T Q for the columns from `first`.
+  MatrixXd coefficients(const Block& Q, Offset first = 0) const {
+    MatrixXd sum = MatrixXd::Zero(size_ - first, b);
+    const Offset chunks = (n_ + rows_at_once - 1) / rows_at_once;
+    std::vector<MatrixXd> parts(static_cast<std::size_t>(chunks));
+    detail::parallel_chunks(n_, rows_at_once, threads_, [&](Offset begin, Offset end) {
+      MatrixXd& part = parts[static_cast<std::size_t>(begin / rows_at_once)];
+      part.resize(size_ - first, b);
+      MatrixXd product;
+      for_each_panel(first, size_, [&](const double* V, Offset from, Offset columns) {
+        product.resize(columns, b);
+        transposed_product({V + begin, n_, end - begin}, columns, {Q.data() + begin, n_, end - begin}, b,
+                           product.data());
+        part.middleRows(from - first, columns) = product;
+      });
+    });
+    for (const MatrixXd& part : parts) sum += part;
+    return sum;
+  }
+
+  /// X += factor V C for the columns from `first`. X is n x C.cols(), column major.
+  void add_to(std::span<double> X, const MatrixXd& C, double factor, Offset first = 0) const {
+    detail::parallel_chunks(n_, rows_at_once, threads_, [&](Offset begin, Offset end) {
+      for_each_panel(first, first + C.rows(), [&](const double* V, Offset from, Offset columns) {
+        add_tall_product({V + begin, n_, end - begin}, columns, C.data() + (from - first), C.rows(), factor,
+                         X.data() + begin, n_, C.cols());
+      });
+    });
+  }
+
+ private:
+  /// Calls body(memory, first column, number of columns) for the columns in [first, last), panel by panel.
+  template <class Body>
+  void for_each_panel(Offset first, Offset last, const Body& body) const {
+    for (Offset column = first; column < last;) {
+      const Offset inside = column % panel_, count = std::min(panel_ - inside, last - column);
+      body(panels_[static_cast<std::size_t>(column / panel_)].get() + inside * n_, column, count);
+      column += count;
+    }
+  }
+
+  Offset n_, panel_, size_ = 0;
+  unsigned threads_;
+  std::vector<std::unique_ptr<double[]>> panels_;
+};
+
+/// The basis of the Krylov space of K^-1 and a random block, and K^-1 in this basis.
+class BlockLanczos {
+ public:
+  BlockLanczos(const LinearSolver& solver, Offset n, unsigned threads)
+      : solver_(solver), n_(n), threads_(threads), V_(n, threads), Q_(static_cast<std::size_t>(n * b)) {
+    for (Offset c = 0; c < b; ++c) fill_randomly(Q_, c);
+    orthonormalize(Q_);
+    V_.append(Q_);
+  }
+
+  /// Multiplies the last block by K^-1 and appends the part that is orthogonal to the basis.
+  void step() {
+    Block W = std::move(Q_);
+    solver_.solve(W, b);
+    const Offset last = V_.size() - b;
+    if (last > 0) V_.add_to(W, coupling_.transpose(), -1, last - b);
+    const MatrixXd A = V_.coefficients(W, last);
+    V_.add_to(W, A, -1, last);
+    diagonal_.push_back((A + A.transpose()) / 2);
+    coupling_ = orthonormalize(W);
+    couplings_.push_back(coupling_);
+    Q_ = std::move(W);
+    V_.append(Q_);
+  }
+
+  /// Columns of the space, without the block that the next step multiplies.
+  Offset size() const { return V_.size() - b; }
+
+  /// The `count` largest eigenvalues in the space with coordinates of their vectors, if their residuals are small enough.
+  std::optional<std::pair<VectorXd, MatrixXd>> converged(Offset count) const {
+    const Offset m = size();
+    MatrixXd T = MatrixXd::Zero(m, m);
+    for (Offset j = 0; j * b < m; ++j) {
+      T.block(j * b, j * b, b, b) = diagonal_[static_cast<std::size_t>(j)];
+      if ((j + 1) * b < m) T.block((j + 1) * b, j * b, b, b) = couplings_[static_cast<std::size_t>(j)];
+    }
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> solved(T);  // reads the lower triangle
+    const VectorXd mu = solved.eigenvalues().reverse().head(count);
+    const MatrixXd Y = solved.eigenvectors().rowwise().reverse().leftCols(count);
+    const VectorXd residuals = (coupling_ * Y.bottomRows(b)).colwise().norm();
+    if ((residuals.array() > residual_tolerance * mu.array()).any()) return std::nullopt;
+    return std::pair(mu, Y);
+  }
+
+  /// V Y
+  std::vector<double> vectors(const MatrixXd& Y) const {
+    std::vector<double> X(static_cast<std::size_t>(n_ * Y.cols()), 0.0);
+    V_.add_to(X, Y, 1);
+    return X;
+  }
+
+ private:
+  void fill_randomly(Block& Q, Offset column) {
+    for (Offset i = 0; i < n_; ++i) Q[static_cast<std::size_t>(column * n_ + i)] = (random_() >> 11) * 0x1p-52 - 1.0;
+  }
+
+  /// Replaces W by an orthonormal block Q that is orthogonal to V. Columns that depend on the others are replaced by random ones.
+  /// @return R, where W - V V^T W = Q R
+  MatrixXd orthonormalize(Block& W) {
+    MatrixXd R = normalize(W).R;
+    for (int pass = 0; pass < 5; ++pass) {  // "twice is enough", unless random columns came in
+      if (V_.size() > 0) V_.add_to(W, V_.coefficients(W), -1);
+      const Normalized made = normalize(W);
+      R = made.R * R;
+      if (made.smallest > 0.5) break;
+    }
+    return R;
+  }
+
+  struct Normalized {
+    MatrixXd R;       ///< W = Q R
+    double smallest;  ///< smallest eigenvalue of W^T W with unit diagonal; 1 if the columns were orthogonal
+  };
+
+  /// Replaces W by an orthonormal block of the same span, by the eigenvectors of W^T W [SW02]. Once it is accurate to the square root of
+  /// the precision, twice to the precision.
+  Normalized normalize(Block& W) {
+    Basis columns(n_, threads_, b);
+    columns.append(W);
+    const MatrixXd gram = columns.coefficients(W);
+    const VectorXd scale = gram.diagonal().unaryExpr([](double g) { return g > 0 ? std::sqrt(g) : 1; });
+    const VectorXd inverse = scale.cwiseInverse();
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> solved(inverse.asDiagonal() * gram * inverse.asDiagonal());
+    VectorXd lambda = solved.eigenvalues();
+    const double smallest = lambda[0];
+    MatrixXd forward = MatrixXd::Zero(b, b), R = MatrixXd::Zero(b, b);
+    for (Offset c = 0; c < b; ++c) {
+      if (lambda[c] < dependent) continue;
+      const double root = std::sqrt(lambda[c]);
+      forward.col(c) = inverse.asDiagonal() * solved.eigenvectors().col(c) / root;
+      R.row(c) = root * solved.eigenvectors().col(c).transpose() * scale.asDiagonal();
+    }
+    std::fill(W.begin(), W.end(), 0.0);
+    columns.add_to(W, forward, 1);
+    for (Offset c = 0; c < b; ++c)
+      if (lambda[c] < dependent) fill_randomly(W, c);
+    return {R, smallest};
+  }
+
+  /// Eigenvalues of W^T W with unit diagonal below this are rounding errors.
+  static constexpr double dependent = 1e-14;
+
+  const LinearSolver& solver_;
+  Offset n_;
+  unsigned threads_;
+  std::mt19937_64 random_;
+  Basis V_;
+  Block Q_;
+  MatrixXd coupling_;
+  std::vector<MatrixXd> diagonal_, couplings_;
+};
+
+}  // namespace
+
+std::optional<Eigenpairs> largest_inverse_eigenpairs(const LinearSolver& solver, Offset n, Offset count,
+                                                     unsigned threads, const Progress& progress) {
+  const OneBlasThread one_thread;
+  if (n < 2 * b) return std::nullopt;
+  BlockLanczos lanczos(solver, n, threads);
+  // Surfaces need about 3.5 count + 50 columns.
+  for (Offset next_check = 3 * count;;) {
+    if (lanczos.size() + 2 * b > n) return std::nullopt;
+    progress.step("eigenvectors",
+                  std::min(0.9, static_cast<double>(lanczos.size()) / static_cast<double>(4 * count + 4 * b)));
+    lanczos.step();
+    if (lanczos.size() < next_check) continue;
+    if (const auto found = lanczos.converged(count))
+      return Eigenpairs{{found->first.begin(), found->first.end()}, lanczos.vectors(found->second)};
+    next_check = lanczos.size() + lanczos.size() / 8;
+  }
+}
+
+}  // namespace ahm
