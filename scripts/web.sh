@@ -7,7 +7,6 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-command -v npm >/dev/null || { echo "error: npm was not found; install Node 20 or later (Debian 12: nodejs and npm have version 18)" >&2; exit 1; }
 scripts/install_packages.sh web
 # The compiler does not search the folder of the system's headers. Debian's libc++ for WebAssembly is configured without std::filesystem,
 # but has its headers: web/src/filesystem.cpp defines the functions that libahm uses.

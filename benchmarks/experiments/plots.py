@@ -24,7 +24,8 @@ LOOKS = {"AHM_a": ("#0072B2", "o"), "AHM_l": ("#56B4E9", "s"), "VHM_log": ("#D55
          "points of the icosphere": ("#888888", "x"), "random points": ("#E69F00", "^"),
          "points on a spiral": ("#CC79A7", "v"), "quads": ("#0072B2", "s"), "quads, refined": ("#0072B2", "s"),
          "hexagons": ("#009E73", "D"), "hexagons, refined": ("#009E73", "D"), "Voronoi cells": ("#D55E00", "P"),
-         "Voronoi cells, refined": ("#D55E00", "P")}
+         "Voronoi cells, refined": ("#D55E00", "P"), "distance": ("#0072B2", "o"), "polar": ("#E69F00", "D"),
+         "heat": ("#56B4E9", "s"), "heat localized": ("#CC79A7", "v"), "Dijkstra": ("#888888", "+")}
 SPARE = [("#0072B2", "o"), ("#D55E00", "^"), ("#009E73", "s"), ("#CC79A7", "v"), ("#E69F00", "D"), ("#56B4E9", "P"),
          ("#000000", "x"), ("#888888", "+")]
 
