@@ -104,11 +104,13 @@ def operators(surface: SurfaceLike, k_eig: int = 128, *, threads: int = 0, progr
     if len(vertex) < n:
         vertices = arguments.counted(n - len(vertex), "vertex")
         raise ValueError(f"surface: {vertices} of its graph are not in the input; use discretization='polygons'")
-    if made.frames is None or len(made.gradient) != 2:
+    values, vectors, frames = made.eigenvalues, made.eigenvectors, made.frames
+    assert values is not None and vectors is not None  # `k_eig` is a number
+    if frames is None or len(made.gradient) != 2:
         raise ValueError("surface: this one has no frames in space; use a mesh or a cloud")
 
-    def dense(values: np.ndarray) -> Any:
-        return torch.from_numpy(np.ascontiguousarray(values, np.float32))
+    def dense(numbers: Any) -> Any:
+        return torch.from_numpy(np.ascontiguousarray(numbers, np.float32))
 
     def sparse(matrix: Any) -> Any:
         rows = matrix[vertex][:, vertex].tocoo()
@@ -117,7 +119,7 @@ def operators(surface: SurfaceLike, k_eig: int = 128, *, threads: int = 0, progr
 
     along_x, along_y = (sparse(matrix / unit) for matrix in made.gradient)
     return Operators(dense(made.mass.diagonal()[vertex] * unit**2), sparse(made.laplacian), along_x, along_y,
-                     dense(made.frames[vertex]), dense(made.eigenvalues / unit**2), dense(made.eigenvectors[vertex] / unit))
+                     dense(frames[vertex]), dense(values / unit**2), dense(vectors[vertex] / unit))
 
 
 class LocalMaps:
