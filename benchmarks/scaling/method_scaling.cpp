@@ -44,7 +44,7 @@ double least_bytes(const TangentGraph& graph, bool has_vectors) {
 
 struct MethodOfScaling {
   const char* name;
-  std::optional<MethodOptions> options;  ///< none: distances alone, which need no solver
+  std::optional<MethodOptions> options;  ///< none: only distances, which need no solver
 };
 
 std::vector<double> measure(bool is_mesh, Index n, const MethodOfScaling& method, unsigned threads) {
