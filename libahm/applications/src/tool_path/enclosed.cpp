@@ -1,9 +1,9 @@
 // The part of a mesh inside or outside of a closed curve. Faces are cut where the curve crosses their sides.
 #include <algorithm>
 #include <map>
-#include <numeric>
 
 #include "ahm/error.hpp"
+#include "ahm/util/disjoint_sets.hpp"
 #include "ahm/util/small_math.hpp"
 #include "ahm/util/vec.hpp"
 #include "tool_path/tool_path.hpp"
@@ -74,21 +74,15 @@ class Cutter {
   /// Joins points that the curve does not separate.
   template <class InComponent>
   void find_parts(const InComponent& in_component) {
-    parts_.resize(mesh_.points.size());
-    std::iota(parts_.begin(), parts_.end(), 0);
-    const auto root = [&](Index p) {
-      while (parts_[to_size(p)] != p) p = parts_[to_size(p)] = parts_[to_size(parts_[to_size(p)])];
-      return p;
-    };
+    detail::DisjointSets parts(mesh_.points.size());
     for (std::size_t h = 0; h < crossings_.size(); ++h) {
       const auto half = static_cast<Half>(h);
       const Index a = mesh_.tail(half), b = mesh_.head(half);
       if (own(half) != half || on_curve_[to_size(a)] || on_curve_[to_size(b)] || crossings_[h].size() % 2 == 1)
         continue;
-      const Index of_a = root(a), of_b = root(b);
-      parts_[to_size(std::max(of_a, of_b))] = std::min(of_a, of_b);
+      parts.join(a, b);
     }
-    for (std::size_t p = 0; p < parts_.size(); ++p) parts_[p] = root(static_cast<Index>(p));
+    for (std::size_t p = 0; p < mesh_.points.size(); ++p) parts_.push_back(parts.root(static_cast<Index>(p)));
     for (std::size_t f = 0; f < mesh_.size(); ++f)
       for (const Index p : mesh_.faces[f])
         if (!on_curve_[to_size(p)] && in_component(p))
