@@ -49,6 +49,17 @@ def test_the_tour_runs_and_has_its_pictures(tmp_path):
     assert pictures == {path.name for path in (HOME / "docs/images").glob("python_*.png")} and len(pictures) == text.count("](images/")
 
 
+def test_the_guide_to_learning_runs_and_has_its_picture(tmp_path):
+    pytest.importorskip("torch")
+    pytest.importorskip("matplotlib")
+    page = HOME / "docs/guides/learning.md"
+    result = subprocess.run([sys.executable, str(HOME / "examples/python/run_page.py"), "--page", str(page), "--level", "3",
+                             "--pictures", str(tmp_path)], capture_output=True, text=True, timeout=600)
+    assert result.returncode == 0, result.stderr
+    assert [path.name for path in tmp_path.iterdir()] == ["local_map.png"]
+    assert "](../images/local_map.png)" in page.read_text(encoding="utf-8") and (HOME / "docs/images/local_map.png").exists()
+
+
 def test_the_page_for_python_is_true(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     failed, tried = doctest.testfile(str(HOME / "docs/guides/python.md"), module_relative=False)
