@@ -1,4 +1,4 @@
-"""Runs the cells of docs/python_tour.md in order and makes its pictures.
+"""Runs the cells of a page in order and makes its pictures: docs/python_tour.md, or docs/guides/learning.md.
 
     python3 run_page.py [--page PAGE.md] [--pictures FOLDER] [--level N]
 
@@ -15,7 +15,7 @@ HOME = Path(__file__).resolve().parents[2]
 
 def cells(text):
     """Yields the code of each cell, and the name of its picture or None."""
-    for code, picture in re.findall(r"```python\n(.*?)```(?:\s*!\[[^\]]*\]\(images/([\w.]+)\))?", text, re.S):
+    for code, picture in re.findall(r"```python\n(.*?)```(?:\s*!\[[^\]]*\]\((?:\.\./)?images/([\w.]+)\))?", text, re.S):
         yield code, picture or None
 
 

@@ -19,12 +19,14 @@ As a transform of data sets, of objects that have `pos` and `face` as those of P
 from __future__ import annotations
 
 import importlib
-from typing import Any, NamedTuple, Optional
+import os
+from typing import Any, Dict, NamedTuple, Optional, Union
 
 import numpy as np
 
 from . import _arguments as arguments
 from ._clouds import PointCloud
+from ._disk_cache import DiskCache, key_of
 from ._fields import operators as _operators
 from ._local_maps import LocalMaps as _Maps, local_maps
 from ._meshes import TriangleMesh
@@ -130,23 +132,45 @@ class LocalMaps:
     device of `data.pos`.
 
     radius, k, method, threads : as in `ahm.local_maps`.
+    cache : folder, which is created; None: no cache. One file per object holds its edges, under a hash of the positions, the triangles,
+        the options that change numbers, and the version of ahm. Damaged files are computed again. Several processes may share the folder.
+        Nothing is ever deleted.
 
     Raises ValueError and TypeError naming the argument, also when the transform is called: errors of `ahm.TriangleMesh`,
-    `ahm.PointCloud` and `ahm.local_maps`.
+    `ahm.PointCloud` and `ahm.local_maps`. OSError (files of the cache that cannot be read or written).
     """
 
-    def __init__(self, radius: Optional[float] = None, k: Optional[int] = None, *, method: str = "auto", threads: int = 0) -> None:
+    def __init__(self, radius: Optional[float] = None, k: Optional[int] = None, *, method: str = "auto", threads: int = 0,
+                 cache: Union[None, str, "os.PathLike[str]"] = None) -> None:
         if radius is None and k is None:
             raise ValueError("radius: missing; pass a radius or k")
-        self._options = dict(checked(radius=radius, k=k, threads=threads), method=method)
+        self._options = dict(checked(radius=radius, k=k, threads=threads),
+                             method=arguments.choice(method, "method", ("auto", "polar", "heat")))
+        self._cache = None if cache is None else DiskCache(cache)
 
     def __call__(self, data: Any) -> Any:
         positions = data.pos.detach().cpu().double().numpy()
         faces = getattr(data, "face", None)
-        surface = PointCloud(positions) if faces is None else TriangleMesh(positions, faces.detach().cpu().numpy().T)
-        for name, value in edges(local_maps(surface, **self._options))._asdict().items():
-            setattr(data, name, value.to(data.pos.device))
+        for name, value in self._edges(positions, None if faces is None else faces.detach().cpu().numpy().T).items():
+            setattr(data, name, torch.from_numpy(value).to(data.pos.device))
         return data
 
+    def _edges(self, positions: np.ndarray, faces: Optional[np.ndarray]) -> Dict[str, np.ndarray]:
+        key = ""
+        if self._cache:
+            numbers = {name: value for name, value in self._options.items() if name != "threads"}
+            key = key_of(f"local maps {sorted(numbers.items())}", positions, faces)
+            stored = self._cache.get(key)
+            if stored is not None:
+                return stored
+        surface = PointCloud(positions) if faces is None else TriangleMesh(positions, faces)
+        found = {name: value.numpy() for name, value in edges(local_maps(surface, **self._options))._asdict().items()}
+        if self._cache:
+            self._cache.put(key, found)
+        return found
+
     def __repr__(self) -> str:
-        return f"ahm.torch.LocalMaps({', '.join(f'{name}={value!r}' for name, value in self._options.items())})"
+        options = [f"{name}={value!r}" for name, value in self._options.items()]
+        if self._cache:
+            options.append(f"cache={str(self._cache.folder)!r}")
+        return f"ahm.torch.LocalMaps({', '.join(options)})"

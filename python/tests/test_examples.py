@@ -9,16 +9,18 @@ import pytest
 
 HOME = Path(__file__).parents[2]
 SMALL = {"01": ["--size", "2000"], "02": ["--level", "3"], "03": ["--level", "4"], "04": ["--level", "4"],
-         "05": ["--size", "40"]}
+         "05": ["--size", "40"], "06": ["--figures", "2", "--epochs", "2"], "07": ["-k", "8", "--processes", "1"]}
 EXAMPLES = sorted((HOME / "examples/python").glob("0*.py"))
 
 
-def test_there_are_five_examples():
+def test_every_example_has_a_small_size():
     assert [path.name[:2] for path in EXAMPLES] == sorted(SMALL)
 
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
 def test_examples_run(path):
+    if path.stem in ("06_segment_shapes", "07_dataset"):
+        pytest.importorskip("torch")
     result = subprocess.run([sys.executable, str(path), *SMALL[path.name[:2]]], capture_output=True, text=True, timeout=600)
     assert result.returncode == 0, result.stderr
 
@@ -45,6 +47,17 @@ def test_the_tour_runs_and_has_its_pictures(tmp_path):
     pictures = {path.name for path in tmp_path.iterdir()}
     text = (HOME / "docs/python_tour.md").read_text(encoding="utf-8")
     assert pictures == {path.name for path in (HOME / "docs/images").glob("python_*.png")} and len(pictures) == text.count("](images/")
+
+
+def test_the_guide_to_learning_runs_and_has_its_picture(tmp_path):
+    pytest.importorskip("torch")
+    pytest.importorskip("matplotlib")
+    page = HOME / "docs/guides/learning.md"
+    result = subprocess.run([sys.executable, str(HOME / "examples/python/run_page.py"), "--page", str(page), "--level", "3",
+                             "--pictures", str(tmp_path)], capture_output=True, text=True, timeout=600)
+    assert result.returncode == 0, result.stderr
+    assert [path.name for path in tmp_path.iterdir()] == ["local_map.png"]
+    assert "](../images/local_map.png)" in page.read_text(encoding="utf-8") and (HOME / "docs/images/local_map.png").exists()
 
 
 def test_the_page_for_python_is_true(tmp_path, monkeypatch):

@@ -63,6 +63,76 @@ def test_a_transform_fills_data_of_meshes_and_clouds(sphere):
     assert repr(copy.deepcopy(transform)) == "ahm.torch.LocalMaps(k=12, threads=0, method='auto')"
 
 
+def as_dictionary(data):
+    return {name: getattr(data, name) for name in ("edge_index", "log", "transport", "distance", "weight")}
+
+
+def assert_same(one, other):
+    for name, values in as_dictionary(one).items():
+        assert values.dtype == getattr(other, name).dtype and torch.equal(values, getattr(other, name))
+
+
+@pytest.fixture
+def computed(monkeypatch):
+    """A list with one entry for every computation of local maps."""
+    calls, compute = [], ahm.torch.local_maps
+    monkeypatch.setattr(ahm.torch, "local_maps", lambda *args, **options: calls.append(options) or compute(*args, **options))
+    return calls
+
+
+def test_a_cached_transform_computes_once(sphere, tmp_path, computed):
+    mesh = lambda scale=1.0: as_data(sphere.points * scale, sphere.faces)  # noqa: E731
+    folder = tmp_path / "new" / "cache"
+    expected = ahm.torch.LocalMaps(k=8)(mesh())
+    computed.clear()
+    for threads in (0, 1):
+        assert_same(ahm.torch.LocalMaps(k=8, threads=threads, cache=folder)(mesh()), expected)
+    assert len(computed) == 1 and [path.suffix for path in folder.iterdir()] == [".maps"]
+    transform = ahm.torch.LocalMaps(k=8, cache=folder)
+    assert_same(copy.deepcopy(transform)(mesh()), expected)
+    assert len(computed) == 1 and repr(transform).endswith(f"cache={str(folder)!r})")
+
+
+def test_the_cache_distinguishes_contents_options_and_versions(sphere, tmp_path, computed, monkeypatch):
+    turned = np.roll(sphere.faces, 1, axis=1)
+    for count, (options, data) in enumerate([
+            (dict(k=8), as_data(sphere.points, sphere.faces)), (dict(k=9), as_data(sphere.points, sphere.faces)),
+            (dict(k=8, method="heat"), as_data(sphere.points, sphere.faces)), (dict(k=8, radius=0.3), as_data(sphere.points, sphere.faces)),
+            (dict(k=8), as_data(np.nextafter(sphere.points, 2), sphere.faces)), (dict(k=8), as_data(sphere.points, turned)),
+            (dict(k=8), as_data(sphere.points))], start=1):
+        ahm.torch.LocalMaps(**options, cache=tmp_path)(data)
+        assert len(computed) == count
+    monkeypatch.setattr(ahm, "__version__", "0.0.0")
+    ahm.torch.LocalMaps(k=8, cache=tmp_path)(as_data(sphere.points, sphere.faces))
+    assert len(computed) == 8
+
+
+def test_damaged_and_foreign_files_are_computed_again(sphere, tmp_path, computed):
+    transform = ahm.torch.LocalMaps(k=8, cache=tmp_path)
+    expected = transform(as_data(sphere.points, sphere.faces))
+    stored, = tmp_path.iterdir()
+    whole = stored.read_bytes()
+    transform(as_data(sphere.points * 2, sphere.faces))
+    other, = set(tmp_path.iterdir()) - {stored}
+    flipped = bytearray(whole)
+    flipped[len(whole) // 2] ^= 1
+    for count, damaged in enumerate([whole[:-100], b"", bytes(flipped), b"not a cache" * 9, other.read_bytes()], start=3):
+        stored.write_bytes(damaged)
+        assert_same(transform(as_data(sphere.points, sphere.faces)), expected)
+        assert len(computed) == count and stored.read_bytes() == whole
+
+
+def test_several_writers_may_store_the_same_entry_at_once(sphere, tmp_path):
+    from concurrent.futures import ThreadPoolExecutor
+
+    transform = ahm.torch.LocalMaps(k=8, threads=1, cache=tmp_path)
+    with ThreadPoolExecutor(8) as pool:
+        found = list(pool.map(lambda _: transform(as_data(sphere.points, sphere.faces)), range(16)))
+    for data in found[1:]:
+        assert_same(data, found[0])
+    assert [path.suffix for path in tmp_path.iterdir()] == [".maps"]
+
+
 def test_operators_are_by_rows_in_world_units(sphere):
     """On a sphere of radius 300, by rows: eigenvalues l (l + 1) / r^2, orthonormal vectors, gradients of coordinates along the axes."""
     for surface in (ahm.TriangleMesh(sphere.points * 300, sphere.faces), ahm.PointCloud(sphere.points * 300)):
@@ -96,6 +166,8 @@ def test_rows_without_a_vertex_have_no_edges(plane):
 def test_arguments_are_named(sphere):
     with pytest.raises(ValueError, match="radius: missing"):
         ahm.torch.LocalMaps()
+    with pytest.raises(ValueError, match="method"):
+        ahm.torch.LocalMaps(k=8, method="fast")
     with pytest.raises(ValueError, match="not a row"):
         ahm.torch.edges(ahm.local_maps(sphere, 0.3, sources=sphere.points[:2] * 0.99))
     with pytest.raises(ValueError, match="dimension 2"):
