@@ -195,8 +195,8 @@ def local_maps(surface: SurfaceLike, radius: Optional[float] = None, k: Optional
     u_axis : (3,) vector in space, projected to the surface at every source. Requires `sources`. None: as in
         `LogMapSolver.log_map`.
     method : "polar": lengths and directions of shortest paths, by exact windows and small fronts. "heat": the affine heat method,
-        smooth on noisy clouds. "auto" (default): the method of a solver, otherwise "polar" on meshes and on clouds with little noise,
-        and "heat" elsewhere; also "heat" if margin, t_coef or variant is set.
+        smooth on noisy clouds. "auto" (default): the method of a solver, otherwise "polar" for k up to 16, on meshes and on clouds with
+        little noise, and "heat" elsewhere; also "heat" if margin, t_coef or variant is set.
     transport : False: without `LocalMaps.transport`, to save memory.
     margin : heat: width of the margin of each patch beyond the radius, in units of sqrt(tau); None: 2. A larger margin is more
         accurate.
@@ -219,7 +219,7 @@ def local_maps(surface: SurfaceLike, radius: Optional[float] = None, k: Optional
     if radius is not None:
         radius = arguments.real(radius, "radius", positive=True)
     of_heat = checked(margin=margin, t_coef=t_coef, variant=variant)
-    options = dict(checked(radius=radius, k=k, threads=threads, transport=transport), method=_method(surface, method, of_heat),
+    options = dict(checked(radius=radius, k=k, threads=threads, transport=transport), method=_method(surface, method, k, of_heat),
                    **of_heat)
     axis = arguments.vector(u_axis, "u_axis")
     if sources is None:
@@ -236,7 +236,7 @@ def local_maps(surface: SurfaceLike, radius: Optional[float] = None, k: Optional
     return LocalMaps(rows, len(on), **found, method=options["method"])
 
 
-def _method(surface: Any, method: str, of_heat: Dict[str, Any]) -> str:
+def _method(surface: Any, method: str, k: Optional[int], of_heat: Dict[str, Any]) -> str:
     """The method of local maps.
 
     of_heat : the options of the heat method that were given.
@@ -251,7 +251,7 @@ def _method(surface: Any, method: str, of_heat: Dict[str, Any]) -> str:
         return "heat"
     if isinstance(solver, (PolarMapSolver, ExactGeodesics)):
         return "polar"
-    return _core.choose_method(as_body(surface)._body)
+    return _core.choose_method(as_body(surface)._body, k or 0)
 
 
 class LocalStroke(NamedTuple):

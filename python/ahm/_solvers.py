@@ -346,7 +346,7 @@ def chosen_maker(thing: Any, method: str, options: Optional[Dict[str, Any]] = No
         return as_maker(thing, None, options)
     if set(options or {}) - {"expected_maps", "progress", "threads"}:
         return as_maker(thing, "heat", options)
-    return as_maker(thing, _core.choose_method(as_body(thing)._body), options)
+    return as_maker(thing, _core.choose_method(as_body(thing)._body, 0), options)
 
 
 def as_maker(thing: Any, method: Optional[str] = None, options: Optional[Dict[str, Any]] = None) -> Maker:

@@ -189,7 +189,7 @@ def tool_path(surface: SurfaceLike, spacing: float, *, seed: str = "auto", plane
     kind, points = _seed(seed, plane, curve)
     mask = np.empty(0, np.uint8)
     if rows is not None:
-        given = arguments.array(rows, "rows")
+        given = np.asarray(arguments.unwrapped(rows))
         if given.dtype != bool or given.ndim != 1:
             raise ValueError(f"rows: expected an array of bool, one per row, got {arguments.describe(rows, given)}")
         mask = np.ascontiguousarray(given, dtype=np.uint8)

@@ -327,9 +327,9 @@ void add_maps(py::module_& module) {
       .def("corners", &corners)
       .def("sample", &sample);
   module.def("exact_maps", &exact_maps);
-  module.def("choose_method", [](const BodyPtr& body) {
-    return std::string(to_string(compute([body] {
-      if (body->surface()) return body->surface()->suggested_method();
+  module.def("choose_method", [](const BodyPtr& body, Index neighbors) {
+    return std::string(to_string(compute([body, neighbors] {
+      if (body->surface()) return suggested_method(*body->surface(), {.k = neighbors});
       return body->grid() ? body->grid()->suggested_method() : choose_method(body->graph());
     })));
   });

@@ -242,6 +242,11 @@ def test_a_tool_path_covers_a_box_and_its_top():
     on_passes = np.concatenate([np.arange(p.begin, p.end) for p in top.passes])
     assert np.allclose(top.position[on_passes, 2], 2) and (np.abs(top.travel[on_passes, 0]) > 0.99).all()
     assert top.measures["area"] == pytest.approx(12)
+    assert ahm.tool_path(box, 0.3, rows=corners[:, 2] == 2).measures["area"] == pytest.approx(12)
+    with pytest.raises(ValueError, match="array of bool"):
+        ahm.tool_path(box, 0.3, rows=[0, 1])
+    with pytest.raises(ValueError, match="point 0 of the seed curve is 1"):
+        ahm.tool_path(box, 0.3, curve=[[0, 0, 3], [4, 0, 2]])
     ring = [[1, 1, 2], [3, 1, 2], [3, 2, 2], [1, 2, 2]]
     for side, area in (("inside", 2), ("outside", 50)):
         assert ahm.tool_path(box, 0.3, **{side: ring}).measures["area"] == pytest.approx(area, abs=0.01)

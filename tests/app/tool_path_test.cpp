@@ -157,6 +157,8 @@ TEST_F(Coverage, RefusesPartsItCannotCover) {
                   {"--whole --spacing 0.2 --seed-plane 0,0,4", 2, {"six numbers"}},
                   {"--whole --spacing 0.2 --seed-curve '0,0,1 0,0,3'", 1, {"point 1 of the seed curve"}},
                   {"--whole --spacing 0.2 --inside '1,0,0 0,1,0 0,0,3'", 1, {"point 2 of the region curve"}},
+                  {"--whole --spacing 0.2 --inside '1,0,0 0,1,0'", 1, {"2 points", "at least three"}},
+                  {"--whole --spacing 0.2 --pattern spiral", 2, {"--pattern", "--whole"}},
                   {"--whole --spacing 0.2 --mask m", 1, {"--mask m"}},
                   {"--whole --spacing 0.2 --facing 0,0,1 --max-angle 0.001", 1, {"no triangle lies in the region"}},
                   {"--spacing 0.2 --clearance 1", 2, {"--clearance requires --whole"}},

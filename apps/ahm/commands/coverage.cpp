@@ -247,8 +247,10 @@ void offer(CLI::App& app, CoverageCommandOptions& o) {
   add_local(app, o.input, "Up to --radius");
   add_map_results(app, o.output);
   offer_whole(app, o.whole);
-  app.callback([=, &o] {
+  app.callback([=, &app, &o] {
     o.has_source = source->count() > 0;
+    for (const char* name : {"--pattern", "--angle", "--u-axis", "--min-quality", "--method", "--variant", "--t-coef"})
+      if (o.whole.whole && app.get_option(name)->count() > 0) throw CLI::ExcludesError(name, "--whole");
     if (!o.whole.whole && source->count() == 0) throw CLI::RequiredError("--source");
     if ((!o.whole.whole || o.has_source) && radius->count() == 0) throw CLI::RequiredError("--radius");
     if (o.whole.whole && !o.has_source && radius->count() > 0) throw CLI::RequiredError("--source");

@@ -172,14 +172,13 @@ void run(const LocalMapsOptions& options) {
   std::vector<Vertex> vertices;
   for (Row row : wanted) vertices.push_back(*rows.vertex(row));
 
-  LocalMapOptions map_options;
-  const Method method = options.solve.method.value_or(input.surface().suggested_method());
+  LocalMapOptions map_options{.k = options.k, .method = options.solve.method};
+  const Method method = suggested_method(input.surface(), map_options);
   if (method == Method::heat) comment_on_hubs(input.graph(), vertices.size(), journal);
 
   journal.start("solve");
   map_options.method = method;
   map_options.radius = options.radius;
-  map_options.k = options.k;
   map_options.heat = options.solve.diffusion();
   map_options.memory = options.solve.memory;
   map_options.heat.progress = journal.progress();

@@ -152,7 +152,7 @@ struct AllRows {
 };
 
 bool is_heat(const Surface& surface, const LocalMapOptions& options) {
-  const Method method = options.method.value_or(surface.suggested_method());
+  const Method method = suggested_method(surface, options);
   if (method == Method::exact)
     throw InvalidArgument("method_not_local", "method is exact; local maps are polar or by heat",
                           "use polar: inside small radii its windows are exact");
@@ -171,6 +171,13 @@ const Surface& surface_of(const PolarMapSolver& solver) {
 }
 
 }  // namespace
+
+Method suggested_method(const Surface& surface, const LocalMapOptions& options) {
+  if (options.method) return *options.method;
+  constexpr Index few_neighbors = 16;
+  const bool is_small = options.k > 0 && options.k <= few_neighbors && surface.graph().dimension() == 2;
+  return is_small ? Method::polar : surface.suggested_method();
+}
 
 RowLocalMaps row_local_maps(const PolarMapSolver& solver, std::span<const Vertex> sources,
                             const LocalMapOptions& options) {

@@ -2,6 +2,7 @@
 // are named.
 
 #include "ahm/maps/quality.hpp"
+#include "ahm/surface/row_local_maps.hpp"
 #include "ahm/surface/surface_triangles.hpp"
 #include "clouds.hpp"
 
@@ -390,6 +391,15 @@ TEST(CloudMethod, IsHeatOnNoisyCloudsAndOnLayers) {
   std::vector<Vec3> sheets = flat_cloud(3000).points;  // one spacing apart
   for (std::size_t i = 0; i < 3000; ++i) sheets.push_back(sheets[(i + 1) % 3000] + Vec3{-0.007, 0.014, 0.014});
   EXPECT_EQ(method(sheets), Method::heat);
+}
+
+TEST(CloudMethod, OfSmallLocalMapsIsPolarOnNoisyClouds) {
+  const auto cloud = PointCloudSurface::build(noisy_sphere(5000, 0.8).points);
+  EXPECT_EQ(suggested_method(cloud, {.k = 12}), Method::polar);
+  EXPECT_EQ(suggested_method(cloud, {.radius = 1, .k = 12}), Method::polar);
+  EXPECT_EQ(suggested_method(cloud, {.k = 12, .method = Method::heat}), Method::heat);
+  EXPECT_EQ(suggested_method(cloud, {.k = 64}), Method::heat);
+  EXPECT_EQ(suggested_method(cloud, {.radius = 1}), Method::heat);
 }
 
 }  // namespace

@@ -444,6 +444,9 @@ void add_poses(const Surface& surface, const PathDomain& domain, std::vector<Pas
     if (pass.curve.closed && !track.track.empty()) track.track.push_back(track.track.front());
   });
   std::erase_if(tracks, [](const TrackedPass& pass) { return pass.track.size() < 2; });
+  if (tracks.empty() && options.offset == 0)
+    throw InvalidArgument("spacing_too_large", "every pass on the region has only one pose",
+                          "choose a smaller spacing");
   if (tracks.empty())
     throw InvalidArgument(
         "offset_too_large",

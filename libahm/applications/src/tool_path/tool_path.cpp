@@ -159,14 +159,15 @@ MeshCurve on_mesh(const PathDomain& domain, std::span<const Vec3> points, bool c
 }
 
 /// The points of a curve, joined on the surface.
-/// @param name  of the curve, for messages: "seed"
+/// @param name   of the curve, for messages: "seed"
+/// @param fault  name of the error, a literal
 SurfaceCurve drawn_curve(const Surface& surface, std::span<const Vec3> positions, bool closed, double spacing,
-                         const std::string& name) {
+                         const std::string& name, std::string_view fault) {
   std::vector<CurvePoint> points;
   for (std::size_t k = 0; k < positions.size(); ++k) {
     const double away = surface.closest_point(positions[k]).distance;
     if (away > largest_curve_distance * spacing)
-      throw InvalidArgument(name + "_off_surface",
+      throw InvalidArgument(fault,
                             "point " + std::to_string(k) + " of the " + name + " curve is " + detail::number(away) +
                                 " from the surface, more than half of the spacing",
                             "use points on the surface");
@@ -204,7 +205,7 @@ struct SeedFinder {
     return result;
   }
   std::vector<MeshCurve> operator()(const CurveSeed& curve) const {
-    const SurfaceCurve drawn = drawn_curve(surface, curve.points, curve.closed, spacing, "seed");
+    const SurfaceCurve drawn = drawn_curve(surface, curve.points, curve.closed, spacing, "seed", "seed_off_surface");
     return {on_mesh(domain, drawn.points, curve.closed, spacing)};
   }
   std::vector<MeshCurve> operator()(const LineSeed& line) const {
@@ -255,12 +256,16 @@ FaceMesh region_mesh(const Surface& surface, const ToolPathRegion& region, doubl
     if (region.rows.size() != to_size(surface.rows().row_count()))
       throw InvalidArgument("the region has " + detail::counted(region.rows.size(), "row") + ", the surface " +
                             std::to_string(surface.rows().row_count()));
-    std::vector<bool> kept(mesh.size());
+    std::vector<bool> inside(mesh.points.size(), true), kept(mesh.size());
+    const auto row = [&](Index p) { return surface.rows().row(Vertex(mesh.vertices[to_size(p)])); };
+    for (std::size_t p = 0; p < inside.size(); ++p)
+      if (const auto r = row(static_cast<Index>(p))) inside[p] = region.rows[to_size(r->index)];
+    // A point without a row, inside of a polygon, is in the region if all corners of the polygon are.
+    for (const Triangle& face : mesh.faces)
+      if (std::ranges::any_of(face, [&](Index p) { return row(p) && !inside[to_size(p)]; }))
+        for (const Index p : face) inside[to_size(p)] = inside[to_size(p)] && row(p);
     for (std::size_t f = 0; f < kept.size(); ++f)
-      kept[f] = std::ranges::all_of(mesh.faces[f], [&](Index p) {
-        const auto row = surface.rows().row(Vertex(mesh.vertices[to_size(p)]));
-        return !row || region.rows[to_size(row->index)];
-      });
+      kept[f] = std::ranges::all_of(mesh.faces[f], [&](Index p) { return inside[to_size(p)]; });
     keep(mesh, kept);
   }
   if (region.facing) {
@@ -284,8 +289,12 @@ FaceMesh region_mesh(const Surface& surface, const ToolPathRegion& region, doubl
   check_extent();
   mesh = refined(mesh, longest);
   for (const ToolPathRegion::Enclosure& enclosure : region.enclosures) {
+    if (enclosure.points.size() < 3)
+      throw InvalidArgument("region_not_enclosed",
+                            "the curve of the region has " + detail::counted(enclosure.points.size(), "point"),
+                            "a closed curve needs at least three");
     const PathDomain domain(std::move(mesh));
-    const SurfaceCurve drawn = drawn_curve(surface, enclosure.points, true, spacing, "region");
+    const SurfaceCurve drawn = drawn_curve(surface, enclosure.points, true, spacing, "region", "region_off_surface");
     const MeshCurve curve = on_mesh(domain, drawn.points, true, spacing);
     if (!curve.closed)
       throw InvalidArgument("region_off_surface", "the region curve leaves the part that the other conditions select",

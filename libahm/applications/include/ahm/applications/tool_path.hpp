@@ -43,7 +43,7 @@ using ToolPathSeed = std::variant<AutomaticSeed, PlaneSeed, BoundarySeed, CurveS
 
 /// The part of the surface to cover, which fulfills all conditions.
 struct ToolPathRegion {
-  std::vector<bool> rows;  ///< one per row: triangles whose corners are all true; empty: all rows
+  std::vector<bool> rows;  ///< one per row: triangles and polygons whose corners are all true; empty: all rows
   /// Triangles whose normals are at most this far from a direction.
   struct Facing {
     Vec3 direction;

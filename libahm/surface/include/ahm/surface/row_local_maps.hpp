@@ -20,12 +20,15 @@ namespace ahm {
 
 using RowLocalMaps = LocalMapsOf<Row>;
 
+/// The method of local maps by options that name none: polar for at most 16 neighbors on a surface of dimension 2, where polar maps are as
+/// accurate as heat on noisy clouds, too (docs/results/local_maps.md), and ten times faster; otherwise `Surface::suggested_method`.
+Method suggested_method(const Surface& surface, const LocalMapOptions& options);
+
 /// Local maps with rows as neighbors: each vertex is replaced by its first row. Vertices without a row, as inside refined
 /// polygons, are omitted; `LocalMapOptions::k` counts the remaining ones. Distances are at least the straight-line
 /// distance, as in `RowLogMap`.
 ///
-/// The method is that of the options. None: the one suggested for the surface (`Surface::suggested_method`). Polar maps are
-/// hundreds of times faster; heat is smoother on noisy clouds. These functions prepare the surface for polar maps in each call; with a
+/// The method is that of the options, or `suggested_method`. Polar maps are ten to hundreds of times faster; heat is smoother on noisy clouds. These functions prepare the surface for polar maps in each call; with a
 /// `PolarMapSolver` this is done once.
 /// @throws InvalidArgument (the method exact); as `local_maps`, `PolarMapSolver::local_maps`
 RowLocalMaps row_local_maps(const Surface& surface, std::span<const Vertex> sources, const LocalMapOptions& options);
