@@ -162,7 +162,8 @@ class SurfaceSolver {
   std::unique_ptr<const Impl> impl_;
 };
 
-/// `SurfaceSolver::distance` by a wavefront, without a solver. The one-rings are built by the first call and kept with the graph.
+/// `SurfaceSolver::distance` by a wavefront, without a solver. The first call without a radius builds the one-rings, and the graph keeps them
+/// if it has a cache.
 /// @throws InvalidArgument (as `Surface::source`; radius), ResourceExhausted, Cancelled
 std::vector<double> distance(const Surface& surface, const std::vector<Location>& sources,
                              const SurfaceDistanceOptions& options = {});
