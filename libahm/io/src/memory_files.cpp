@@ -21,7 +21,7 @@ std::uint64_t free_memory() { return std::numeric_limits<std::uintptr_t>::max();
 
 namespace {
 
-const std::string& bytes_of(const std::filesystem::path& path) {
+const std::string& contents_of(const std::filesystem::path& path) {
   const auto found = memory_files().find(path.string());
   if (found == memory_files().end()) throw IoError("cannot read " + quoted_path(path) + ": there is no such file");
   return found->second;
@@ -29,7 +29,7 @@ const std::string& bytes_of(const std::filesystem::path& path) {
 
 }  // namespace
 
-RegularFile::RegularFile(const std::filesystem::path& path) : path_(path), size_(bytes_of(path).size()) {
+RegularFile::RegularFile(const std::filesystem::path& path) : path_(path), size_(contents_of(path).size()) {
   if (size_ == 0) throw IoError("cannot read " + quoted_path(path) + ": the file is empty (0 bytes)");
 }
 
@@ -41,7 +41,7 @@ RegularFile::~RegularFile() = default;
 RegularFile::RegularFile(RegularFile&& other) noexcept = default;
 
 std::size_t RegularFile::read(std::uint64_t position, std::span<char> room) const {
-  const std::string& bytes = bytes_of(path_);
+  const std::string& bytes = contents_of(path_);
   return position < bytes.size() ? bytes.copy(room.data(), room.size(), static_cast<std::size_t>(position)) : 0;
 }
 
@@ -66,15 +66,6 @@ void AtomicFile::commit() {
     name();
 }
 void AtomicFile::name() { memory_files()[target_.string()] = std::move(buffer_); }
-
-thread_local FileSet* FileSet::innermost = nullptr;
-FileSet::FileSet() noexcept : outer_(std::exchange(innermost, this)) {}
-FileSet::~FileSet() { innermost = outer_; }
-void FileSet::commit() {
-  if (innermost == nullptr) return;
-  for (AtomicFile& file : innermost->files_) file.name();
-  innermost->files_.clear();
-}
 
 std::string written_bytes(const std::string& name, const std::function<void(const std::filesystem::path&)>& write) {
   write(name);

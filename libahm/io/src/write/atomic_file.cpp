@@ -305,18 +305,6 @@ void AtomicFile::fail(int error) {
   throw IoError(problem);
 }
 
-thread_local FileSet* FileSet::innermost = nullptr;
-
-FileSet::FileSet() noexcept : outer_(std::exchange(innermost, this)) {}
-
-FileSet::~FileSet() { innermost = outer_; }
-
-void FileSet::commit() {
-  if (innermost == nullptr) return;
-  for (AtomicFile& file : innermost->files_) file.name();
-  innermost->files_.clear();
-}
-
 std::string written_bytes(const std::string& name, const std::function<void(const std::filesystem::path&)>& write) {
   const TemporaryFolder folder("ahm-");
   const std::filesystem::path path = folder.directory() / name;
