@@ -460,8 +460,9 @@ void set_factor(const CLI::App& app, SolveOptions& o) {
 
 CLI::Option* add_factor(CLI::App& app, SolveOptions& o) {
   return add_parsed(app, "--factor", o.factor, choice({"own", "cholmod", "cholmod-simplicial"}), "NAME",
-                    "Library of the factorization, for comparisons: own (default), cholmod (SuiteSparse), or\n"
-                    "cholmod-simplicial (its factorization without supernodes). Not for a march");
+                    "Library of the factorization, for comparisons: own (default), cholmod (SuiteSparse, by its\n"
+                    "own choice with supernodes if the factor is large), or cholmod-simplicial (never with\n"
+                    "supernodes). Not for a march");
 }
 
 void offer_method(CLI::App& app, LogmapOptions& o) {

@@ -138,7 +138,7 @@ class SurfaceSolver {
 
   /// Geodesic distance of each row from the nearest source, world units: by a wavefront, or exact where that is the method. NaN where
   /// no source is connected.
-  /// @throws InvalidArgument (as `Surface::source`; radius), Cancelled
+  /// @throws InvalidArgument (as `Surface::source`; radius), ResourceExhausted, Cancelled
   std::vector<double> distance(const std::vector<Location>& sources, const SurfaceDistanceOptions& options = {}) const;
   std::vector<double> distance(const Location& source, const SurfaceDistanceOptions& options = {}) const;
 
