@@ -1,4 +1,4 @@
-"""Local maps as tensors, for PyTorch and PyTorch Geometric. Imports torch, which `import ahm` does not.
+"""Local maps, operators and geodesics as tensors, for PyTorch and PyTorch Geometric. Imports torch, which `import ahm` does not.
 
 >>> import ahm, torch, ahm.torch
 >>> positions, faces = ahm.shapes.sphere(2)
@@ -14,6 +14,8 @@ As a transform of data sets, of objects that have `pos` and `face` as those of P
 >>> data = ahm.torch.LocalMaps(k=12)(data)          # e.g. pre_transform=ahm.torch.LocalMaps(k=12)
 >>> data.edge_index.shape, data.log.shape
 (torch.Size([2, 1944]), torch.Size([1944, 2]))
+
+`trace`, `log`, `distance` and `sample` have derivatives by points on the surface.
 """
 
 from __future__ import annotations
@@ -26,6 +28,7 @@ import numpy as np
 
 from . import _arguments as arguments
 from ._clouds import PointCloud
+from ._differentiable import Sampled, Traced, distance, log, sample, trace
 from ._disk_cache import DiskCache, key_of
 from ._fields import operators as _operators
 from ._local_maps import LocalMaps as _Maps, local_maps
@@ -36,7 +39,7 @@ from .typing import SurfaceLike
 
 torch: Any = importlib.import_module("torch")  # Any: checkers of types need not read torch
 
-__all__ = ["Edges", "LocalMaps", "Operators", "edges", "operators"]
+__all__ = ["Edges", "LocalMaps", "Operators", "Sampled", "Traced", "distance", "edges", "log", "operators", "sample", "trace"]
 
 
 class Edges(NamedTuple):
