@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <memory>
@@ -12,6 +13,7 @@
 #include "ahm/error.hpp"
 #include "ahm/grid/grid_graph.hpp"
 #include "ahm/maps/local_maps.hpp"
+#include "ahm/maps/quality.hpp"
 #include "ahm/pointcloud/point_cloud_surface.hpp"
 #include "ahm/surface/polar_map_solver.hpp"
 #include "ahm/surface/row_local_maps.hpp"
@@ -95,6 +97,44 @@ TEST(LocalPolarMaps, ArePartsOfWholeMapsOnClouds) {
   const auto noisy = noisy_cloud(torus(1500), 0.3 * edge_of(clean.graph()));
   expect_parts_of_whole_maps(PolarMapSolver(noisy), 4 * edge_of(noisy.graph()), 1e-12);
   expect_parts_of_whole_maps(PolarMapSolver(noisy, {.windows = 0}), 4 * edge_of(noisy.graph()), 1e-12);
+}
+
+/// Qualities of local and whole maps at vertices whose neighbors the local map contains. Local maps have no other edges.
+std::vector<std::array<double, 2>> qualities(const PolarMapSolver& solver, double radius) {
+  const TangentGraph& graph = solver.graph();
+  const std::vector<Vertex> sources = some_vertices(graph);
+  const LocalMaps maps = solver.local_maps(sources, {.radius = radius, .quality = true});
+  std::vector<std::array<double, 2>> result;
+  for (std::size_t s = 0; s < sources.size(); ++s) {
+    const std::vector<double> whole = map_quality(graph, solver.log_map(sources[s]));
+    const auto first = maps.neighbors.begin() + maps.indptr[s], last = maps.neighbors.begin() + maps.indptr[s + 1];
+    for (auto at = first; at != last; ++at)
+      if (std::ranges::all_of(graph.star(at->index).neighbors,
+                              [&](Index j) { return std::find(first, last, Vertex(j)) != last; }))
+        result.push_back({maps.quality[to_size(at - maps.neighbors.begin())], whole[at->index]});
+  }
+  return result;
+}
+
+TEST(LocalPolarMaps, HaveTheQualityOfWholeMaps) {
+  // The long tube of this torus is thinner than the radius, so maps contain cut loci.
+  const auto mesh = surface_of(torus(1500));
+  Index doubtful = 0;
+  for (const Offset windows : {Offset{0}, Offset{1} << 17})
+    for (const auto& [local, whole] : qualities(PolarMapSolver(mesh, {.windows = windows}), 1.8)) {
+      ASSERT_NEAR(local, whole, 1e-9);
+      doubtful += whole < reliable_quality;
+    }
+  EXPECT_GT(doubtful, 50);
+  const auto clean = pointcloud::PointCloudSurface::build(torus(1500).positions);
+  const auto noisy = noisy_cloud(torus(1500), 0.3 * edge_of(clean.graph()));
+  for (const TangentGraph* graph : {&clean.graph(), &noisy.graph()}) {
+    const PolarMapSolver solver(graph == &clean.graph() ? clean : noisy);
+    const auto found = qualities(solver, 5 * edge_of(*graph));
+    EXPECT_GT(found.size(), 200u);
+    for (const auto& [local, whole] : found) ASSERT_NEAR(local, whole, 1e-9);
+  }
+  EXPECT_TRUE(PolarMapSolver(mesh).local_maps(some_vertices(mesh.graph()), {.radius = 0.5}).quality.empty());
 }
 
 TEST(LocalPolarMaps, AreExactOnPlanes) {

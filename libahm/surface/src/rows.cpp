@@ -96,12 +96,14 @@ RowLocalMaps keep_rows(LocalMaps&& maps, const RowMap& rows, Index most) {
       if (!row || (most > 0 && taken == most)) continue;
       neighbors[kept] = *row;
       move(maps.distances, 1, e), move(maps.weights, 1, e), move(maps.logs, d, e), move(maps.transports, width, e);
+      if (!maps.quality.empty()) move(maps.quality, 1, e);
       ++kept;
     }
   }
   maps.indptr.back() = static_cast<Offset>(kept);
   neighbors.resize(kept), maps.distances.resize(kept), maps.weights.resize(kept);
   maps.logs.resize(d * kept), maps.transports.resize(width * kept);
+  if (!maps.quality.empty()) maps.quality.resize(kept);
   return std::move(maps).renamed(std::move(neighbors));
 }
 

@@ -112,6 +112,22 @@ TEST(LocalMaps, ContainOnlyTheNearest) {
   }
 }
 
+TEST(LocalMaps, HaveALowQualityNextToTheCutLocus) {
+  const CsrGraph plane(planar_triangulation(20).data), sphere(sphere_graph(500));
+  for (const double q : local_maps(plane, every(37, plane), {.radius = 0.3, .quality = true}).quality)
+    EXPECT_NEAR(q, 1, 1e-9);
+  const LocalMaps maps = local_maps(sphere, every(97, sphere), {.radius = 3.5, .quality = true});
+  ASSERT_EQ(maps.quality.size(), maps.neighbors.size());
+  double lowest = 1;
+  for (std::size_t e = 0; e < maps.quality.size(); ++e) {
+    EXPECT_GT(maps.quality[e], maps.distances[e] < 1 ? 0.9 : 0);
+    EXPECT_LE(maps.quality[e], 1);
+    lowest = std::min(lowest, maps.quality[e]);
+  }
+  EXPECT_LT(lowest, 0.3);
+  EXPECT_TRUE(local_maps(plane, every(37, plane), {.radius = 0.3}).quality.empty());
+}
+
 TEST(LocalMaps, TakeSourcesOfAnyKind) {
   const FlatGraph flat = planar_triangulation(30, TransportKind::block);
   const CsrGraph graph(flat.data);
