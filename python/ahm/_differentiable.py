@@ -1,7 +1,7 @@
 """Geodesics that PyTorch differentiates: exponential map, log map, distance, and interpolation in a log map. Public as `ahm.torch`.
 
 The derivatives are exact on the flat faces of a mesh. The faces along a geodesic unfold into a plane, where the geodesic is a straight
-line. They jump where the geodesic passes a vertex and at the cut locus. Second derivatives are refused.
+line. They jump where the geodesic passes a vertex and at the cut locus. Second derivatives raise an error.
 """
 
 from __future__ import annotations
@@ -158,7 +158,7 @@ def sample(values: Any, map: Union[LogMap, InverseMap], uv: Any) -> Sampled:
     found = torch.einsum("kc,kc...->k...", weight, values[rows])
     result = values.new_zeros(len(flat), *values.shape[1:]).index_put((at,), found)
     valid = torch.zeros(len(flat), dtype=torch.bool, device=values.device).index_fill(0, at, True)
-    return Sampled(result.reshape(*uv.shape[:-1], *values.shape[1:]), valid.reshape(uv.shape[:-1]))
+    return Sampled(result.reshape((*uv.shape[:-1], *values.shape[1:])), valid.reshape(uv.shape[:-1]))
 
 
 class _Derived(torch.autograd.Function):
@@ -170,8 +170,9 @@ class _Derived(torch.autograd.Function):
         return torch.from_numpy(np.ascontiguousarray(value)).to(first)
 
     @staticmethod
-    @torch.autograd.function.once_differentiable
     def backward(context: Any, gradient: Any) -> Any:
+        if torch.is_grad_enabled():
+            raise RuntimeError("ahm.torch: geodesics have no second derivatives; differentiate without create_graph")
         return (*(torch.einsum("km,kmd->kd", gradient, by) for by in context.saved_tensors), None, None, None)
 
 

@@ -116,8 +116,9 @@ def test_a_mean_by_descent_is_the_karcher_mean():
         (0.5 * ahm.torch.distance(mesh, x, landmarks) ** 2).mean().backward()
         step = -x.grad
         x = position(mesh, x.detach(), step)
-    mean = ahm.karcher_mean(mesh, [3, 20, 100, 200], method="exact")
-    assert float(step.norm()) < 1e-3 and np.linalg.norm(x - mean.position) < 0.01
+    mean = torch.from_numpy(ahm.karcher_mean(mesh, [3, 20, 100, 200], method="exact").position)
+    energy = [float((ahm.torch.distance(mesh, y, landmarks) ** 2).mean()) for y in (x, mean)]
+    assert float(step.norm()) < 1e-9 and energy[0] <= energy[1] < 1.001 * energy[0]
 
 
 def test_a_geodesic_that_ends_at_the_boundary_has_the_derivatives_of_its_end():
@@ -126,7 +127,7 @@ def test_a_geodesic_that_ends_at_the_boundary_has_the_derivatives_of_its_end():
     v = torch.tensor([[7.0, 3.0, 1.0], [0.5, 0.4, 0.0]], dtype=torch.float64, requires_grad=True)
     traced = ahm.torch.trace(plane, p, v)
     assert traced.complete.tolist() == [False, True]
-    torch.testing.assert_close(traced.position[0], torch.tensor([4.0, 3.3, 0.0]).double(), rtol=0, atol=1e-12)
+    torch.testing.assert_close(traced.position[0], torch.tensor([4.0, 3.3, 0.0], dtype=torch.float64), rtol=0, atol=1e-12)
     assert torch.autograd.gradcheck(lambda p, v: position(plane, p, v), (p, v))
 
 
@@ -176,9 +177,8 @@ def test_positions_off_the_surface_are_those_of_the_nearest_points(mesh):
 
 def test_second_derivatives_are_refused(mesh):
     p, q = points(mesh, 2), points(mesh, 2, seed=5, grad=False)
-    first, = torch.autograd.grad(ahm.torch.distance(mesh, p, q).sum(), p, create_graph=True)
-    with pytest.raises(RuntimeError, match="once_differentiable"):
-        first.sum().backward()
+    with pytest.raises(RuntimeError, match="geodesics have no second derivatives"):
+        torch.autograd.grad(ahm.torch.distance(mesh, p, q).sum(), p, create_graph=True)
 
 
 def test_faults_are_named(sphere):
@@ -202,5 +202,5 @@ def test_faults_are_named(sphere):
     with pytest.raises(ValueError, match=r"target\[1\]: .* is not connected to source\[1\]"):
         ahm.torch.distance(two, torch.tensor([[0.0, 0, 1]]), torch.tensor([[0.0, 1, 0], [5.0, 0, 1]]))
     corner = ahm.TriangleMesh(*ahm.shapes.plane(3, 3))
-    with pytest.raises(ValueError, match=r"point: the direction leaves the surface at vertex"):
+    with pytest.raises(ValueError, match=r"point\[0\]: the direction leaves the surface at vertex"):
         ahm.torch.trace(corner, torch.tensor([0.0, 0, 0]), torch.tensor([-1.0, -1, 0]))

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "ahm/conformance/triangle_meshes.hpp"
+#include "ahm/maps/quality.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "core/solved_graph.hpp"
 
@@ -120,7 +121,7 @@ TEST(LocalMaps, HaveALowQualityNextToTheCutLocus) {
   ASSERT_EQ(maps.quality.size(), maps.neighbors.size());
   double lowest = 1;
   for (std::size_t e = 0; e < maps.quality.size(); ++e) {
-    EXPECT_GT(maps.quality[e], maps.distances[e] < 1 ? 0.9 : 0);
+    EXPECT_GT(maps.quality[e], maps.distances[e] < 1 ? reliable_quality : 0);
     EXPECT_LE(maps.quality[e], 1);
     lowest = std::min(lowest, maps.quality[e]);
   }

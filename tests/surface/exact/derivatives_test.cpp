@@ -10,6 +10,7 @@
 #include <memory>
 #include <random>
 
+#include "ahm/util/small_math.hpp"
 #include "polyhedra.hpp"
 
 namespace ahm::test {

@@ -12,7 +12,7 @@
 namespace ahm {
 namespace {
 
-TangentMap sum(const TangentMap& a, const TangentMap& b) {
+TangentMap sum_of(const TangentMap& a, const TangentMap& b) {
   TangentMap result;
   for (std::size_t k = 0; k < result.size(); ++k) result[k] = a[k] + b[k];
   return result;
@@ -27,7 +27,7 @@ TangentMap outer(const Vec3& to, const Vec3& from) {
 }
 
 /// Position of a corner of a face, in units of the triangles.
-Vec3 corner(const FlatTriangles& flat, Index face, int s) {
+Vec3 corner_position(const FlatTriangles& flat, Index face, int s) {
   return (1 / flat.length_unit) * flat.positions[flat.surface.record(3 * face + s % 3).tail];
 }
 
@@ -38,11 +38,11 @@ struct TangentPlane {
 
   Vec3 along(double a) const { return std::cos(a) * x + std::sin(a) * y; }
   Vec3 left(double a) const { return std::cos(a) * y - std::sin(a) * x; }
-  TangentMap identity() const { return sum(outer(x, x), outer(y, y)); }
+  TangentMap identity() const { return sum_of(outer(x, x), outer(y, y)); }
 };
 
 TangentPlane plane_of_face(const FlatTriangles& flat, Index face) {
-  const Vec3 side = corner(flat, face, 1) - corner(flat, face, 0), other = corner(flat, face, 2) - corner(flat, face, 0);
+  const Vec3 side = corner_position(flat, face, 1) - corner_position(flat, face, 0), other = corner_position(flat, face, 2) - corner_position(flat, face, 0);
   return {normalized(side), normalized(cross(cross(side, other), side))};
 }
 
@@ -58,24 +58,24 @@ TangentPlane plane_at(const ExactGeodesics& geodesics, const exact::MeshPoint& p
           side * (std::cos(zero) * frame->y - std::sin(zero) * frame->x), flat.surface.angle_scale(vertex)};
 }
 
-void check(const ExactGeodesics& geodesics) {
+void check_derivatives(const ExactGeodesics& geodesics) {
   if (geodesics.triangles().positions.empty()) throw InvalidArgument("the surface has no positions");
   if (geodesics.surface().graph().transport_layout().may_reflect())
     throw InvalidArgument("not_orientable", "the surface is not orientable, so its geodesics have no derivatives here",
                           "cut the surface open");
 }
 
-exact::MeshPoint point_on(const ExactGeodesics& geodesics, const SurfacePoint& point, const char* name) {
+exact::MeshPoint triangle_point(const ExactGeodesics& geodesics, const SurfacePoint& point, const char* name) {
   return exact::checked(geodesics.triangles().surface, geodesics.point(point), name);
 }
 
 /// The motion of the point where a line meets the boundary, per unit of motion of the line to its left. Zero at a vertex.
 /// @param end  on the boundary
-Vec3 sliding(const FlatTriangles& flat, const exact::MeshPoint& end, const Vec3& along, const Vec3& left) {
+Vec3 sliding(const FlatTriangles& flat, const exact::MeshPoint& end, const Vec3& left) {
   if (exact::vertex_of(flat.surface, end) >= 0) return {};
   int opposite = 0;  // the corner opposite to the side with the point
   while (opposite < 2 && end.barycentric[opposite] > 0) ++opposite;
-  const Vec3 side = normalized(corner(flat, end.face, opposite + 2) - corner(flat, end.face, opposite + 1));
+  const Vec3 side = normalized(corner_position(flat, end.face, opposite + 2) - corner_position(flat, end.face, opposite + 1));
   const double share = dot(side, left);
   return share == 0 ? Vec3{} : (1 / share) * side;
 }
@@ -83,10 +83,10 @@ Vec3 sliding(const FlatTriangles& flat, const exact::MeshPoint& end, const Vec3&
 }  // namespace
 
 ExponentialPoint exponential_point(const ExactGeodesics& geodesics, const SurfacePoint& start, const Vec3& vector) {
-  check(geodesics);
+  check_derivatives(geodesics);
   if (!is_finite(vector)) throw InvalidArgument("the vector is not finite");
   const FlatTriangles& flat = geodesics.triangles();
-  const exact::MeshPoint from = point_on(geodesics, start, "start");
+  const exact::MeshPoint from = triangle_point(geodesics, start, "start");
   const TangentPlane plane = plane_at(geodesics, from);
   const double u = dot(vector, plane.x), v = dot(vector, plane.y), length = std::hypot(u, v);
   if (length == 0) return {geodesics.position(from), true, plane.identity(), plane.identity()};
@@ -99,14 +99,14 @@ ExponentialPoint exponential_point(const ExactGeodesics& geodesics, const Surfac
   ExponentialPoint end{geodesics.position(to), path.end == exact::TraceEnd::complete};
   Vec3 forward = there.along(path.direction), sideways = there.left(path.direction);
   if (!end.complete) {
-    sideways = sliding(flat, to, forward, sideways);
+    sideways = sliding(flat, to, sideways);
     forward = {};
   }
   // A turn of the vector by an angle moves the end by this angle times the length of the line.
   const double turned = path.length * flat.length_unit / length / plane.angle_scale;
   const TangentMap of_forward = outer(forward, plane.along(direction));
-  end.by_start = sum(of_forward, outer(sideways, plane.left(direction)));
-  end.by_vector = sum(of_forward, outer(turned * sideways, plane.left(direction)));
+  end.by_start = sum_of(of_forward, outer(sideways, plane.left(direction)));
+  end.by_vector = sum_of(of_forward, outer(turned * sideways, plane.left(direction)));
   return end;
 }
 
@@ -127,22 +127,24 @@ std::optional<double> straight_length(const ExactGeodesics& geodesics, const exa
 /// @param ends  start and end of the path
 GeodesicEnds ends_of(const ExactGeodesics& geodesics, const exact::GeodesicPath& path, const exact::PointPair& ends) {
   if (path.status != Status::ok) return {.status = path.status};
-  GeodesicEnds result{.distance = path.length * geodesics.triangles().length_unit};
   const TangentPlane here = plane_at(geodesics, ends[0]), there = plane_at(geodesics, ends[1]);
-  if (path.length == 0) {
+  const bool is_same = ends[0].face == ends[1].face && ends[0].barycentric == ends[1].barycentric;
+  GeodesicEnds result;
+  if (is_same || path.length == 0) {  // the length may be a rounding error
     result.log_by_target = here.identity();
     for (std::size_t k = 0; k < result.log_by_source.size(); ++k) result.log_by_source[k] = -result.log_by_target[k];
     return result;
   }
+  result.distance = path.length * geodesics.triangles().length_unit;
   result.departure = here.along(path.start_direction);
   result.arrival = -there.along(path.end_direction);
   const Vec3 left = here.left(path.start_direction), left_there = -there.left(path.end_direction);
   const std::optional<double> straight = straight_length(geodesics, path);
   // Where the path bends, the direction at the source does not depend on the target.
   const TangentMap along = outer(result.departure, result.arrival);
-  result.log_by_target = straight ? along : sum(along, outer(here.angle_scale * left, left_there));
+  result.log_by_target = straight ? along : sum_of(along, outer(here.angle_scale * left, left_there));
   const double turned = straight ? result.distance / *straight : 1;
-  result.log_by_source = sum(outer(-result.departure, result.departure), outer(-turned * left, left));
+  result.log_by_source = sum_of(outer(-result.departure, result.departure), outer(-turned * left, left));
   return result;
 }
 
@@ -151,10 +153,10 @@ GeodesicEnds ends_of(const ExactGeodesics& geodesics, const exact::GeodesicPath&
 std::vector<GeodesicEnds> geodesic_ends(const ExactGeodesics& geodesics,
                                         std::span<const std::array<SurfacePoint, 2>> pairs, const Progress& progress,
                                         unsigned threads) {
-  check(geodesics);
+  check_derivatives(geodesics);
   std::vector<exact::PointPair> ends;
   for (const auto& [source, target] : pairs)
-    ends.push_back({point_on(geodesics, source, "source"), point_on(geodesics, target, "target")});
+    ends.push_back({triangle_point(geodesics, source, "source"), triangle_point(geodesics, target, "target")});
   const auto paths = exact::geodesic_paths(geodesics.triangles().surface, ends, progress, threads);
   std::vector<GeodesicEnds> result;
   for (std::size_t k = 0; k < paths.size(); ++k) result.push_back(ends_of(geodesics, paths[k], ends[k]));
