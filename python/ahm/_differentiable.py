@@ -33,7 +33,7 @@ class Traced(NamedTuple):
 class Sampled(NamedTuple):
     """Values at coordinates of a log map. Returned by `sample`."""
 
-    value: Any  #: (..., *channels), 0 where not valid
+    value: Any  #: (..., channels) values, or (...) of values without channels; 0 where not valid
     valid: Any  #: (...) bool: whether a triangle of the map contains the coordinates
 
 
@@ -119,7 +119,7 @@ def distance(surface: SurfaceLike, source: Any, target: Any, *, threads: int = 0
 def sample(values: Any, map: Union[LogMap, InverseMap], uv: Any) -> Sampled:
     """Values of the rows, interpolated at coordinates of a log map.
 
-    values : (n, *channels) tensor, one entry per row of the surface.
+    values : (n, channels) or (n,) tensor, one entry per row of the surface. There may be several axes of channels.
     map : a log map with frames, or an `ahm.InverseMap`.
     uv : (..., 2) tensor of coordinates, world units.
 

@@ -63,9 +63,9 @@ RowLocalMaps of_points(const Given& given, const Places& at, const std::optional
     return with_solver(given, options,
                        [&](const PolarMapSolver& s) { return by_rows(s.local_maps(sources, options)); });
   }
-  if (options.method == Method::heat) return row_local_maps(*body.surface(), sources, options);
   std::vector<SurfacePoint> points;
   for (const Place& place : at.places) points.push_back(body.point(place));
+  if (options.method == Method::heat) return row_local_maps(*body.surface(), points, options, axis);
   return with_solver(given, options,
                      [&](const PolarMapSolver& solver) { return row_local_maps(solver, points, options, axis); });
 }

@@ -137,6 +137,40 @@ TEST(LocalPolarMaps, HaveTheQualityOfWholeMaps) {
   EXPECT_TRUE(PolarMapSolver(mesh).local_maps(some_vertices(mesh.graph()), {.radius = 0.5}).quality.empty());
 }
 
+TEST(LocalMaps, ContainEveryCopyOfAPoint) {
+  std::vector<Vec3> points = torus(600).positions;
+  const auto plain = pointcloud::PointCloudSurface::build(points);
+  const std::size_t n = points.size();
+  for (std::size_t k = 0; k < n; k += 7) points.push_back(points[k]);
+  const auto copied = pointcloud::PointCloudSurface::build(points);
+  ASSERT_EQ(copied.graph().size(), plain.graph().size());
+  const double radius = 3 * edge_of(plain.graph());
+  for (const Method method : {Method::polar, Method::heat}) {
+    const RowLocalMaps single = row_local_maps(plain, {.radius = radius, .method = method}),
+                       maps = row_local_maps(copied, {.radius = radius, .method = method});
+    const auto original = [&](Row row) { return to_size(row.index) < n ? to_size(row.index) : 7 * (to_size(row.index) - n); };
+    for (std::size_t r = 0; r < points.size(); ++r) {
+      const std::size_t s = original(Row(static_cast<Index>(r)));
+      EXPECT_EQ(maps.neighbors[to_size(maps.indptr[r])], Row(static_cast<Index>(r)));
+      std::map<std::size_t, double> expected, found;
+      for (Offset e = single.indptr[s]; e < single.indptr[s + 1]; ++e)
+        expected[to_size(single.neighbors[e].index)] = single.weights[e];
+      Offset copies = 0;
+      for (Offset e = maps.indptr[r]; e < maps.indptr[r + 1]; ++e) {
+        copies += to_size(maps.neighbors[e].index) >= n;
+        found[original(maps.neighbors[e])] += maps.weights[e];
+      }
+      ASSERT_EQ(found.size(), expected.size());
+      for (const auto& [row, weight] : expected) ASSERT_NEAR(found[row], weight, 1e-12);
+      EXPECT_EQ(copies, std::ranges::count_if(expected, [](const auto& one) { return one.first % 7 == 0; }));
+    }
+    const RowLocalMaps nearest = row_local_maps(copied, {.k = 5, .method = method});
+    for (std::size_t r = 0; r < points.size(); ++r) EXPECT_EQ(nearest.indptr[r + 1] - nearest.indptr[r], 5);
+    const std::array<SurfacePoint, 1> last{Row(static_cast<Index>(points.size()) - 1)};
+    EXPECT_EQ(row_local_maps(copied, last, {.k = 5, .method = method}).neighbors[0], std::get<Row>(last[0]));
+  }
+}
+
 TEST(LocalPolarMaps, AreExactOnPlanes) {
   Mesh mesh = flat_square(21);
   const auto surface = surface_of(mesh);
