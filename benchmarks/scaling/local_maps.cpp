@@ -163,8 +163,8 @@ void measure_local_maps(const Surface& surface, const ahm::Surface& view, std::s
     const double added = added_megabytes([&] { row_local_maps(view, options); });
     const double result =
         1e-6 * entries * (sizeof(Row) + sizeof(double) * (2 + 2 + (view.graph().transport_layout().width())));
-    table.add({surface.name(), as, view.graph().size(), to_string(method), entries / view.graph().size(), s,
-               processor, view.graph().size() / s, loop / processor, quantile(found.vectors, 0.5), quantile(found.vectors, 0.95),
+    table.add({surface.name(), as, view.graph().size(), to_string(method), entries / view.graph().size(), s, processor,
+               view.graph().size() / s, loop / processor, quantile(found.vectors, 0.5), quantile(found.vectors, 0.95),
                quantile(found.distances, 0.95), result, added});
   }
 }

@@ -1,8 +1,9 @@
 // The exponential map and shortest paths with their derivatives, for automatic differentiation.
+#include "ahm/surface/exact/geodesic_derivatives.hpp"
+
 #include <array>
 #include <utility>
 
-#include "ahm/surface/exact/geodesic_derivatives.hpp"
 #include "body.hpp"
 #include "compute.hpp"
 #include "errors.hpp"

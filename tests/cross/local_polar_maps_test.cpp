@@ -148,7 +148,9 @@ TEST(LocalMaps, ContainEveryCopyOfAPoint) {
   for (const Method method : {Method::polar, Method::heat}) {
     const RowLocalMaps single = row_local_maps(plain, {.radius = radius, .method = method}),
                        maps = row_local_maps(copied, {.radius = radius, .method = method});
-    const auto original = [&](Row row) { return to_size(row.index) < n ? to_size(row.index) : 7 * (to_size(row.index) - n); };
+    const auto original = [&](Row row) {
+      return to_size(row.index) < n ? to_size(row.index) : 7 * (to_size(row.index) - n);
+    };
     for (std::size_t r = 0; r < points.size(); ++r) {
       const std::size_t s = original(Row(static_cast<Index>(r)));
       EXPECT_EQ(maps.neighbors[to_size(maps.indptr[r])], Row(static_cast<Index>(r)));

@@ -1,6 +1,4 @@
 // Derivatives of the exponential map, distances and log maps, compared with differences.
-#include "ahm/surface/exact/geodesic_derivatives.hpp"
-
 #include <gtest/gtest.h>
 
 #include <array>
@@ -10,6 +8,7 @@
 #include <memory>
 #include <random>
 
+#include "ahm/surface/exact/geodesic_derivatives.hpp"
 #include "ahm/util/small_math.hpp"
 #include "polyhedra.hpp"
 
@@ -71,14 +70,12 @@ struct Shape {
   std::mt19937_64 random{3};
 };
 
-Shape shape(const Mesh& mesh) {
-  return Shape(std::make_unique<const trimesh::TriangleMeshSurface>(surface_of(mesh)));
-}
+Shape shape(const Mesh& mesh) { return Shape(std::make_unique<const trimesh::TriangleMeshSurface>(surface_of(mesh))); }
 
 /// Convex, with saddles, with folds, with holes, and of polygons.
 std::vector<std::function<Shape()>> curved_shapes() {
-  return {[] { return shape(icosphere(7)); }, [] { return shape(rough_sphere()); }, [] { return shape(folded_strip(11)); },
-          [] { return shape(holed_square(14)); },
+  return {[] { return shape(icosphere(7)); }, [] { return shape(rough_sphere()); },
+          [] { return shape(folded_strip(11)); }, [] { return shape(holed_square(14)); },
           [] { return Shape(std::make_unique<const polymesh::PolygonMeshSurface>(surface_of(voronoi_square(60)))); }};
 }
 
@@ -100,10 +97,12 @@ TEST(GeodesicDerivatives, OfTheExponentialMapAreDifferences) {
       const Vec3 v = on.random_vector(0.1 + 0.02 * k), w = on.tangent(start, on.random_vector(1));
       const ExponentialPoint end = exponential_point(on.geodesics, start, v);
       stopped += !end.complete;
-      expect_difference(product(end.by_start, w),
-                        [&](double t) { return exponential_point(on.geodesics, on.moved(start, t * w), v).position; }, 1e-7);
-      expect_difference(product(end.by_vector, w),
-                        [&](double t) { return exponential_point(on.geodesics, start, v + t * w).position; }, 1e-7);
+      expect_difference(
+          product(end.by_start, w),
+          [&](double t) { return exponential_point(on.geodesics, on.moved(start, t * w), v).position; }, 1e-7);
+      expect_difference(
+          product(end.by_vector, w),
+          [&](double t) { return exponential_point(on.geodesics, start, v + t * w).position; }, 1e-7);
     }
   }
   EXPECT_GT(stopped, 20);
@@ -114,8 +113,9 @@ TEST(GeodesicDerivatives, OfTheExponentialMapAtVerticesAreDifferences) {
     Shape on = shape(mesh);
     for (Index row = 0; row < 40; ++row) {
       const Vec3 v = on.random_vector(0.5), w = on.tangent(Row(row), on.random_vector(1));
-      expect_difference(product(exponential_point(on.geodesics, Row(row), v).by_vector, w),
-                        [&](double t) { return exponential_point(on.geodesics, Row(row), v + t * w).position; }, 1e-7);
+      expect_difference(
+          product(exponential_point(on.geodesics, Row(row), v).by_vector, w),
+          [&](double t) { return exponential_point(on.geodesics, Row(row), v + t * w).position; }, 1e-7);
     }
   }
 }
@@ -128,12 +128,22 @@ TEST(GeodesicDerivatives, OfDistancesAndLogMapsAreDifferences) {
       const SurfacePoint p = on.random_point(), q = on.random_point();
       const GeodesicEnds found = on.ends(p, q);
       const Vec3 w = on.tangent(p, on.random_vector(1)), z = on.tangent(q, on.random_vector(1));
-      expect_difference({dot(found.departure, w), 0, 0},
-                        [&](double t) { return Vec3{-on.ends(on.moved(p, t * w), q).distance, 0, 0}; }, 1e-7);
-      expect_difference({dot(found.arrival, z), 0, 0},
-                        [&](double t) { return Vec3{on.ends(p, on.moved(q, t * z)).distance, 0, 0}; }, 1e-7);
-      expect_difference(product(found.log_by_source, w), [&](double t) { return on.log(on.moved(p, t * w), q); }, 1e-6);
-      expect_difference(product(found.log_by_target, z), [&](double t) { return on.log(p, on.moved(q, t * z)); }, 1e-6);
+      expect_difference(
+          {dot(found.departure, w), 0, 0},
+          [&](double t) {
+            return Vec3{-on.ends(on.moved(p, t * w), q).distance, 0, 0};
+          },
+          1e-7);
+      expect_difference(
+          {dot(found.arrival, z), 0, 0},
+          [&](double t) {
+            return Vec3{on.ends(p, on.moved(q, t * z)).distance, 0, 0};
+          },
+          1e-7);
+      expect_difference(
+          product(found.log_by_source, w), [&](double t) { return on.log(on.moved(p, t * w), q); }, 1e-6);
+      expect_difference(
+          product(found.log_by_target, z), [&](double t) { return on.log(p, on.moved(q, t * z)); }, 1e-6);
     }
   }
 }
@@ -144,8 +154,9 @@ TEST(GeodesicDerivatives, OfLogMapsAtVerticesAreDifferences) {
     for (Index row = 0; row < 30; ++row) {
       const SurfacePoint q = on.random_point();
       const Vec3 z = on.tangent(q, on.random_vector(1));
-      expect_difference(product(on.ends(Row(row), q).log_by_target, z),
-                        [&](double t) { return on.log(Row(row), on.moved(q, t * z)); }, 1e-6);
+      expect_difference(
+          product(on.ends(Row(row), q).log_by_target, z),
+          [&](double t) { return on.log(Row(row), on.moved(q, t * z)); }, 1e-6);
     }
   }
 }

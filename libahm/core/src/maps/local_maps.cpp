@@ -302,7 +302,8 @@ class Worker {
   /// Adds the quality of the vertices in `order_`.
   /// @param distance  of each vertex of the patch
   void add_quality(const Patch& patch, std::span<const double> distance, LocalEntries& entries) const {
-    const double farthest = order_.empty() ? 0 : order_.back().first, h = graph_.length_unit() * graph_.mean_edge_length();
+    const double farthest = order_.empty() ? 0 : order_.back().first,
+                 h = graph_.length_unit() * graph_.mean_edge_length();
     const auto phi = [&](Index k) { return std::span(phi_).subspan(to_size(k) * d_, d_); };
     for (const auto& [from_source, k] : order_) {
       const auto length_in_map = [&, here = k](Index j) {

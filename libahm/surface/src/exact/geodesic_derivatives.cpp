@@ -42,7 +42,8 @@ struct TangentPlane {
 };
 
 TangentPlane plane_of_face(const FlatTriangles& flat, Index face) {
-  const Vec3 side = corner_position(flat, face, 1) - corner_position(flat, face, 0), other = corner_position(flat, face, 2) - corner_position(flat, face, 0);
+  const Vec3 side = corner_position(flat, face, 1) - corner_position(flat, face, 0),
+             other = corner_position(flat, face, 2) - corner_position(flat, face, 0);
   return {normalized(side), normalized(cross(cross(side, other), side))};
 }
 
@@ -75,7 +76,8 @@ Vec3 sliding(const FlatTriangles& flat, const exact::MeshPoint& end, const Vec3&
   if (exact::vertex_of(flat.surface, end) >= 0) return {};
   int opposite = 0;  // the corner opposite to the side with the point
   while (opposite < 2 && end.barycentric[opposite] > 0) ++opposite;
-  const Vec3 side = normalized(corner_position(flat, end.face, opposite + 2) - corner_position(flat, end.face, opposite + 1));
+  const Vec3 side =
+      normalized(corner_position(flat, end.face, opposite + 2) - corner_position(flat, end.face, opposite + 1));
   const double share = dot(side, left);
   return share == 0 ? Vec3{} : (1 / share) * side;
 }

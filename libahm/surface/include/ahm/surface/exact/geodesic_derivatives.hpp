@@ -41,11 +41,11 @@ ExponentialPoint exponential_point(const ExactGeodesics& geodesics, const Surfac
 
 /// A shortest path at its ends. The log map of the source takes the target to the distance times the departure.
 struct GeodesicEnds {
-  Status status = Status::ok;    ///< the other members are zero where it is not ok
-  double distance = 0;           ///< world units
-  Vec3 departure{}, arrival{};   ///< unit vectors along the path at the source and at the target; zero at the distance 0
-  TangentMap log_by_source{};    ///< derivative of the log map; at a vertex, where it jumps, minus the identity
-  TangentMap log_by_target{};    ///< derivative of the log map
+  Status status = Status::ok;   ///< the other members are zero where it is not ok
+  double distance = 0;          ///< world units
+  Vec3 departure{}, arrival{};  ///< unit vectors along the path at the source and at the target; zero at the distance 0
+  TangentMap log_by_source{};   ///< derivative of the log map; at a vertex, where it jumps, minus the identity
+  TangentMap log_by_target{};   ///< derivative of the log map
 };
 
 /// Shortest paths between many pairs of points, as `ExactGeodesics::paths`. The derivative of the distance is the arrival by the
