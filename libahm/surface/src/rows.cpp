@@ -120,7 +120,7 @@ RowLocalMaps on_rows(LocalMaps&& maps, const RowMap& rows, const SharedVertices&
                      Index most) {
   std::vector<std::size_t> entries;
   std::vector<Row> neighbors;
-  std::vector<double> parts;
+  std::vector<std::pair<std::size_t, double>> parts;  // entries on shared vertices, and their part of the weight
   entries.reserve(maps.neighbors.size()), neighbors.reserve(maps.neighbors.size());
   for (std::size_t s = 0; s + 1 < maps.indptr.size(); ++s) {
     const auto begin = static_cast<std::size_t>(maps.indptr[s]), end = static_cast<std::size_t>(maps.indptr[s + 1]);
@@ -128,8 +128,8 @@ RowLocalMaps on_rows(LocalMaps&& maps, const RowMap& rows, const SharedVertices&
     maps.indptr[s] = static_cast<Offset>(first);
     const auto add = [&](std::size_t e, Row row, std::size_t part) {
       if (most > 0 && neighbors.size() - first == static_cast<std::size_t>(most)) return;
+      if (part > 1) parts.emplace_back(neighbors.size(), 1.0 / static_cast<double>(part));
       entries.push_back(e), neighbors.push_back(row);
-      if (!shared.empty()) parts.push_back(1.0 / static_cast<double>(part));
     };
     for (std::size_t e = begin; e < end; ++e) {
       const std::optional<Row> row = rows.row(maps.neighbors[e]);
@@ -153,7 +153,7 @@ RowLocalMaps on_rows(LocalMaps&& maps, const RowMap& rows, const SharedVertices&
     maps.logs = entries_of(std::move(maps.logs), entries, static_cast<std::size_t>(maps.dimension));
     maps.transports = entries_of(std::move(maps.transports), entries, maps.transport_width());
     maps.quality = entries_of(std::move(maps.quality), entries, 1);
-    for (std::size_t k = 0; k < parts.size(); ++k) maps.weights[k] *= parts[k];
+    for (const auto& [entry, part] : parts) maps.weights[entry] *= part;
   }
   return std::move(maps).renamed(std::move(neighbors));
 }
