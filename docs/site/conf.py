@@ -13,6 +13,7 @@ myst_heading_anchors = 3
 default_role = "py:obj"  # `Surface` in a docstring is a link where there is such a thing, code elsewhere
 add_module_names = False
 autodoc_member_order = "groupwise"
+autodoc_mock_imports = ["torch"]  # the site builds without PyTorch
 autodoc_typehints = "none"
 copybutton_prompt_text = r">>> |\.\.\. "
 copybutton_prompt_is_regexp = True

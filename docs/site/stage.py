@@ -76,7 +76,8 @@ def headers():
             if path.suffix == ".hpp":
                 pages[str(path)] = compound.findtext("filename")
     result, last = "", None
-    rooms = ["libahm/core", "libahm/surface", "libahm/applications", "backends", "io", "view", "testing"]  # upwards
+    rooms = ["libahm/base", "libahm/cholesky", "libahm/core", "libahm/surface", "libahm/applications", "backends", "libahm/io", "libahm/render",
+             "libahm/conformance"]  # upwards
     for header in sorted(pages, key=lambda h: ([h.startswith(r) for r in rooms].index(True), str(pathlib.Path(h).parent), h)):
         text = re.search(r"/// \\file\n((?:/// .*\n)+)", (root / header).read_text(encoding="utf-8"))
         if text is None:
@@ -95,7 +96,7 @@ contents = (root / "docs/site/contents.md").read_text(encoding="utf-8")
 page(pathlib.Path("README.md"), pathlib.Path("index.md"), "\n" + contents)
 pages = ["CONTRIBUTING.md", "CHANGELOG.md", "SECURITY.md", *(str(p.relative_to(root)) for p in (root / "docs").rglob("*.md"))]
 pages = [page for page in pages if not page.startswith("docs/site/")]
-pages += [str(p.relative_to(root)) for top in ("backends", "benchmarks") for p in (root / top).rglob("README.md")]
+pages += [str(p.relative_to(root)) for top in ("backends", "benchmarks", "web") for p in (root / top).rglob("README.md")]
 for path in pages:
     orphan = not path.startswith("docs/") and path.endswith("README.md")
     page(pathlib.Path(path))

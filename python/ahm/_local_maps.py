@@ -29,6 +29,7 @@ class PaddedMaps(NamedTuple):
     distance: np.ndarray  #: (s, k) geodesic distances of the neighbors from the source, world units
     weight: np.ndarray  #: (s, k) masses of the neighbors, world units to the power d
     transport: Optional[np.ndarray]  #: (s, k, 2) (cos, sin), or (s, k, d, d): from the source's frame to the neighbor's
+    quality: Optional[np.ndarray]  #: (s, k) how reliable `log` is, in (0, 1]
 
 
 class LocalMaps:
@@ -44,6 +45,8 @@ class LocalMaps:
     weight : (e,) masses of the neighbors, for integration, world units to the power d.
     transport : (e, 2) (cos, sin), or (e, d, d): takes components in the source's frame to components in the neighbor's frame.
         `transport.view(complex)[:, 0]` are complex numbers, without a copy. None if the maps were made without.
+    quality : (e,) how reliable `log` is, in (0, 1], as `LogMap.quality`; low next to the cut locus and on noise. None if the maps were
+        made without. By heat, only edges that the map stretches and the difference of |log| and the distance count.
     sources : (s,) int32 rows of the sources; -1 for sources that are not rows.
     columns : number of rows of the surface.
     method : "polar" or "heat".
@@ -55,8 +58,9 @@ class LocalMaps:
     """
 
     def __init__(self, sources: np.ndarray, columns: int, indptr: np.ndarray, indices: np.ndarray, log: np.ndarray,
-                 distance: np.ndarray, weight: np.ndarray, transport: Optional[np.ndarray], method: str) -> None:
-        self.sources, self.columns, self.method = sources, columns, method
+                 distance: np.ndarray, weight: np.ndarray, transport: Optional[np.ndarray], method: str,
+                 quality: Optional[np.ndarray] = None) -> None:
+        self.sources, self.columns, self.method, self.quality = sources, columns, method, quality
         self.indptr, self.indices, self.log = indptr, indices, log
         self.distance, self.weight, self.transport = distance, weight, transport
 
@@ -65,7 +69,7 @@ class LocalMaps:
 
         The columns of a matrix row are in order of distance, not sorted.
 
-        values : "distance", "weight", "u", "v", "transport" (complex), or an array of (e,) numbers.
+        values : "distance", "weight", "u", "v", "quality", "transport" (complex), or an array of (e,) numbers.
 
         >>> import ahm
         >>> maps = ahm.local_maps(ahm.shapes.plane(9, 9), radius=1.0)
@@ -119,7 +123,7 @@ class LocalMaps:
         return result
 
     def _named(self, values: str) -> np.ndarray:
-        arguments.choice(values, "values", ("distance", "weight", "u", "v", "transport"))
+        arguments.choice(values, "values", ("distance", "weight", "u", "v", "quality", "transport"))
         if values in "uv":
             return self.log[:, "uv".index(values)]
         if values == "transport":
@@ -128,6 +132,8 @@ class LocalMaps:
             if self.transport.ndim != 2:
                 raise ValueError("values: 'transport' requires rotations of the plane; these transports are matrices")
             return self.transport[:, 0] + 1j * self.transport[:, 1]
+        if values == "quality" and self.quality is None:
+            raise ValueError("values: 'quality' is missing; make the maps with quality=True")
         return getattr(self, values)
 
     def padded(self, k: Optional[int] = None, dtype: DTypeLike = np.float32) -> PaddedMaps:
@@ -165,7 +171,8 @@ class LocalMaps:
 
         return PaddedMaps(spread(self.indices, np.int32), spread(np.ones(len(self.indices), bool), bool),
                           spread(self.log, dtype), spread(self.distance, dtype), spread(self.weight, dtype),
-                          None if self.transport is None else spread(self.transport, dtype))
+                          None if self.transport is None else spread(self.transport, dtype),
+                          None if self.quality is None else spread(self.quality, dtype))
 
     def __len__(self) -> int:
         """Number of sources."""
@@ -173,7 +180,7 @@ class LocalMaps:
 
     def __reduce__(self) -> tuple:
         return reduced(LocalMaps, self.sources, self.columns, self.indptr, self.indices, self.log, self.distance, self.weight,
-                       self.transport, self.method)
+                       self.transport, self.method, self.quality)
 
     def __repr__(self) -> str:
         return f"<ahm.LocalMaps: {arguments.counted(len(self), 'source')}, {arguments.counted(len(self.indices), 'entry')}>"
@@ -181,7 +188,7 @@ class LocalMaps:
 
 def local_maps(surface: SurfaceLike, radius: Optional[float] = None, k: Optional[int] = None, *,
                sources: Optional[Sources] = None, u_axis: Optional[Vector] = None, method: str = "auto", transport: bool = True,
-               margin: Optional[float] = None, t_coef: Optional[float] = None, variant: Optional[str] = None, threads: int = 0,
+               quality: bool = False, margin: Optional[float] = None, t_coef: Optional[float] = None, variant: Optional[str] = None, threads: int = 0,
                progress: Progress = None) -> LocalMaps:
     """Log maps within a radius, or of the k nearest rows, around every row or around `sources`.
 
@@ -198,6 +205,7 @@ def local_maps(surface: SurfaceLike, radius: Optional[float] = None, k: Optional
         smooth on noisy clouds. "auto" (default): the method of a solver, otherwise "polar" for k up to 16, on meshes and on clouds with
         little noise, and "heat" elsewhere; also "heat" if margin, t_coef or variant is set.
     transport : False: without `LocalMaps.transport`, to save memory.
+    quality : True: with `LocalMaps.quality`. On clouds, polar maps then take twice the time.
     margin : heat: width of the margin of each patch beyond the radius, in units of sqrt(tau); None: 2. A larger margin is more
         accurate.
     t_coef, variant : heat: as in `LogMapSolver`; None: 1 and "adaptive".
@@ -219,7 +227,7 @@ def local_maps(surface: SurfaceLike, radius: Optional[float] = None, k: Optional
     if radius is not None:
         radius = arguments.real(radius, "radius", positive=True)
     of_heat = checked(margin=margin, t_coef=t_coef, variant=variant)
-    options = dict(checked(radius=radius, k=k, threads=threads, transport=transport), method=_method(surface, method, k, of_heat),
+    options = dict(checked(radius=radius, k=k, threads=threads, transport=transport, quality=quality), method=_method(surface, method, k, of_heat),
                    **of_heat)
     axis = arguments.vector(u_axis, "u_axis")
     if sources is None:

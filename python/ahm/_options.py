@@ -40,6 +40,7 @@ CHECKS: Dict[str, Callable[[Any, str], Any]] = {
     "k": _whole(1),
     "margin": _positive,
     "transport": arguments.flag,
+    "quality": arguments.flag,
     "delaunay": arguments.flag,
     "clamp_weights": arguments.flag,
     "non_manifold": _one_of("error", "split"),

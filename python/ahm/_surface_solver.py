@@ -110,7 +110,7 @@ class SurfaceSolver:
 
     def local_maps(self, radius: Optional[float] = None, k: Optional[int] = None, *, sources: Optional[Sources] = None,
                    u_axis: Optional[Vector] = None, margin: Optional[float] = None, transport: bool = True,
-                   progress: Progress = None) -> LocalMaps:
+                   quality: bool = False, progress: Progress = None) -> LocalMaps:
         """Log maps within a radius around every row, or around `sources`: by heat if the solver's method is "heat", otherwise
         polar. Arguments and errors as in `ahm.local_maps`.
 
@@ -118,7 +118,7 @@ class SurfaceSolver:
         >>> ahm.SurfaceSolver(ahm.shapes.plane(9, 9)).local_maps(radius=1.0, sources=[40, 0])
         <ahm.LocalMaps: 2 sources, 8 entries>
         """
-        return _local_maps(self._solver, radius, k, sources=sources, u_axis=u_axis, margin=margin, transport=transport,
+        return _local_maps(self._solver, radius, k, sources=sources, u_axis=u_axis, margin=margin, transport=transport, quality=quality,
                            method="heat" if self.method == "heat" else "polar", progress=progress)
 
     def __reduce__(self) -> tuple:

@@ -1,4 +1,4 @@
-"""Local maps as tensors, for PyTorch and PyTorch Geometric. Imports torch, which `import ahm` does not.
+"""Local maps, operators and geodesics as tensors, for PyTorch and PyTorch Geometric. Imports torch, which `import ahm` does not.
 
 >>> import ahm, torch, ahm.torch
 >>> positions, faces = ahm.shapes.sphere(2)
@@ -14,6 +14,8 @@ As a transform of data sets, of objects that have `pos` and `face` as those of P
 >>> data = ahm.torch.LocalMaps(k=12)(data)          # e.g. pre_transform=ahm.torch.LocalMaps(k=12)
 >>> data.edge_index.shape, data.log.shape
 (torch.Size([2, 1944]), torch.Size([1944, 2]))
+
+`trace`, `log`, `distance` and `sample` have derivatives by points on the surface.
 """
 
 from __future__ import annotations
@@ -26,6 +28,7 @@ import numpy as np
 
 from . import _arguments as arguments
 from ._clouds import PointCloud
+from ._differentiable import Sampled, Traced, distance, log, sample, trace
 from ._disk_cache import DiskCache, key_of
 from ._fields import operators as _operators
 from ._local_maps import LocalMaps as _Maps, local_maps
@@ -36,7 +39,7 @@ from .typing import SurfaceLike
 
 torch: Any = importlib.import_module("torch")  # Any: checkers of types need not read torch
 
-__all__ = ["Edges", "LocalMaps", "Operators", "edges", "operators"]
+__all__ = ["Edges", "LocalMaps", "Operators", "Sampled", "Traced", "distance", "edges", "log", "operators", "sample", "trace"]
 
 
 class Edges(NamedTuple):
@@ -47,12 +50,13 @@ class Edges(NamedTuple):
     transport: Optional[Any]  #: (e,) complex64: times u + iv of a vector at j, in the frame of j, is u + iv in the frame of i
     distance: Any  #: (e,) float32: geodesic distance, world units
     weight: Any  #: (e,) float32: area of j, for integration
+    quality: Optional[Any] = None  #: (e,) float32: how reliable `log` is, in (0, 1]; None if the maps were made without
 
 
 def edges(maps: _Maps) -> Edges:
     """The entries of local maps as tensors on the CPU, with the edges of each source nearest first. Every row is its own first neighbor.
 
-    maps : local maps of rows, from `ahm.local_maps`. `Edges.transport` is None if they have none.
+    maps : local maps of rows, from `ahm.local_maps`. `Edges.transport` and `Edges.quality` are None if they have none.
 
     `transport` is the inverse of `ahm.LocalMaps.transport`, because messages go from the neighbor to the source. Rows without a
     vertex have no edges, and no number is NaN.
@@ -67,8 +71,9 @@ def edges(maps: _Maps) -> Edges:
     transport = None
     if maps.transport is not None:
         transport = torch.from_numpy(np.conj(maps.transport.astype(np.float32).view(np.complex64)[:, 0]))
-    log, distance, weight = (torch.from_numpy(values.astype(np.float32)) for values in (maps.log, maps.distance, maps.weight))
-    return Edges(torch.from_numpy(maps.edge_index()), log, transport, distance, weight)
+    log, distance, weight, quality = (None if values is None else torch.from_numpy(values.astype(np.float32))
+                                      for values in (maps.log, maps.distance, maps.weight, maps.quality))
+    return Edges(torch.from_numpy(maps.edge_index()), log, transport, distance, weight, quality)
 
 
 class Operators(NamedTuple):
@@ -129,9 +134,9 @@ class LocalMaps:
 
     It reads `data.pos`, (n, 3) positions, and `data.face`, (3, f) triangles as in PyTorch Geometric; without `face`, or if it is None,
     the points are a point cloud. It sets `edge_index`, `log`, `transport`, `distance` and `weight`, tensors as in `Edges`, on the
-    device of `data.pos`.
+    device of `data.pos`, and with quality=True also `quality`.
 
-    radius, k, method, threads : as in `ahm.local_maps`.
+    radius, k, method, quality, threads : as in `ahm.local_maps`.
     cache : folder, which is created; None: no cache. One file per object holds its edges, under a hash of the positions, the triangles,
         the options that change numbers, and the version of ahm. Damaged files are computed again. Several processes may share the folder.
         Nothing is ever deleted.
@@ -140,11 +145,11 @@ class LocalMaps:
     `ahm.PointCloud` and `ahm.local_maps`. OSError (files of the cache that cannot be read or written).
     """
 
-    def __init__(self, radius: Optional[float] = None, k: Optional[int] = None, *, method: str = "auto", threads: int = 0,
-                 cache: Union[None, str, "os.PathLike[str]"] = None) -> None:
+    def __init__(self, radius: Optional[float] = None, k: Optional[int] = None, *, method: str = "auto", quality: bool = False,
+                 threads: int = 0, cache: Union[None, str, "os.PathLike[str]"] = None) -> None:
         if radius is None and k is None:
             raise ValueError("radius: missing; pass a radius or k")
-        self._options = dict(checked(radius=radius, k=k, threads=threads),
+        self._options = dict(checked(radius=radius, k=k, quality=quality, threads=threads),
                              method=arguments.choice(method, "method", ("auto", "polar", "heat")))
         self._cache = None if cache is None else DiskCache(cache)
 
@@ -164,7 +169,8 @@ class LocalMaps:
             if stored is not None:
                 return stored
         surface = PointCloud(positions) if faces is None else TriangleMesh(positions, faces)
-        found = {name: value.numpy() for name, value in edges(local_maps(surface, **self._options))._asdict().items()}
+        made = edges(local_maps(surface, **self._options))._asdict()
+        found = {name: value.numpy() for name, value in made.items() if value is not None}
         if self._cache:
             self._cache.put(key, found)
         return found

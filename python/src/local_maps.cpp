@@ -63,9 +63,9 @@ RowLocalMaps of_points(const Given& given, const Places& at, const std::optional
     return with_solver(given, options,
                        [&](const PolarMapSolver& s) { return by_rows(s.local_maps(sources, options)); });
   }
-  if (options.method == Method::heat) return row_local_maps(*body.surface(), sources, options);
   std::vector<SurfacePoint> points;
   for (const Place& place : at.places) points.push_back(body.point(place));
+  if (options.method == Method::heat) return row_local_maps(*body.surface(), points, options, axis);
   return with_solver(given, options,
                      [&](const PolarMapSolver& solver) { return row_local_maps(solver, points, options, axis); });
 }
@@ -75,13 +75,15 @@ LocalMapOptions local_options(const py::dict& options) {
   read(options, "radius", o.radius);
   read(options, "k", o.k);
   read(options, "margin", o.margin);
+  read(options, "quality", o.quality);
   read_choice(options, "method", o.method, {{"heat", Method::heat}, {"polar", Method::polar}});
   o.heat = heat_options(options).diffusion();
   return o;
 }
 
 /// @param transport  whether to keep the transports
-py::dict arrays(RowLocalMaps&& maps, bool transport) {
+/// @param quality    whether the quality was computed
+py::dict arrays(RowLocalMaps&& maps, bool transport, bool quality) {
   using namespace py::literals;
   const auto entries = static_cast<py::ssize_t>(maps.neighbors.size());
   const py::ssize_t d = maps.dimension;
@@ -92,7 +94,8 @@ py::dict arrays(RowLocalMaps&& maps, bool transport) {
       "weight"_a = owned(std::move(maps.weights)),
       "transport"_a = transport ? py::object(owned<double>(std::move(maps.transports),
                                                            complex ? Shape{entries, 2} : Shape{entries, d, d}))
-                                : py::object(py::none()));
+                                : py::object(py::none()),
+      "quality"_a = quality ? py::object(owned(std::move(maps.quality))) : py::object(py::none()));
 }
 
 /// Local maps of points, or of all rows if `sources` is None.
@@ -109,7 +112,7 @@ py::dict local_maps_of(const py::object& on, const py::object& sources, const py
     o.heat.progress = progress;
     return at ? of_points(given, *at, axis, o) : of_all_rows(given, o);
   };
-  return arrays(compute(report, py::none(), found), transport);
+  return arrays(compute(report, py::none(), found), transport, o.quality);
 }
 
 /// @return the local map of a curve, the corners of the curve on the surface, its length
@@ -124,7 +127,7 @@ py::tuple local_stroke(const BodyPtr& body, const py::tuple& points, bool closed
     RowLocalMaps found = row_local_maps(body->surface_for("a curve"), std::span<const Source>(&drawn.source, 1), o);
     return std::pair(std::move(found), std::move(drawn));
   });
-  return py::make_tuple(arrays(std::move(maps), false), owned(std::move(curve.points)), curve.length);
+  return py::make_tuple(arrays(std::move(maps), false, false), owned(std::move(curve.points)), curve.length);
 }
 
 }  // namespace

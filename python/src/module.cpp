@@ -17,6 +17,7 @@ PYBIND11_MODULE(_core, module) {
   ahm::python::add_local_maps(module);
   ahm::python::add_fields(module);
   ahm::python::add_geodesics(module);
+  ahm::python::add_geodesic_derivatives(module);
   ahm::python::add_applications(module);
   ahm::python::add_textures(module);
   ahm::python::add_tool_paths(module);

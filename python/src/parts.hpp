@@ -16,6 +16,7 @@ void add_maps(py::module_& module);
 void add_local_maps(py::module_& module);
 void add_fields(py::module_& module);
 void add_geodesics(py::module_& module);
+void add_geodesic_derivatives(py::module_& module);
 void add_applications(py::module_& module);
 void add_textures(py::module_& module);
 void add_tool_paths(py::module_& module);

@@ -342,8 +342,12 @@ def test_local_maps_are_edges_with_transports(sphere):
     assert max(abs(z * there[j, i] - 1) for (i, j), z in there.items() if (j, i) in there) < 1e-9
     without = ahm.local_maps(sphere, k=9, transport=False)
     assert without.transport is None and np.array_equal(without.log, maps.log)
-    assert without.padded().transport is None
-    with pytest.raises(ValueError, match="transport=True"):
-        without.csr("transport")
+    assert without.padded().transport is None and without.quality is None
+    for values in ("transport", "quality"):
+        with pytest.raises(ValueError, match=f"{values}=True"):
+            without.csr(values)
+    judged = ahm.local_maps(sphere, k=9, quality=True)
+    assert np.array_equal(judged.csr("quality").data, judged.quality) and judged.padded().quality.shape == (len(sphere), 9)
+    assert 0.9 < judged.quality.min() <= judged.quality.max() <= 1
     with pytest.raises(ValueError, match=r"sources\[0\]: not a row"):
         ahm.local_maps(sphere, 0.3, sources=[[0, 0, 1.0], [0.6, 0, 0.8]]).edge_index()

@@ -9,7 +9,8 @@ import pytest
 
 HOME = Path(__file__).parents[2]
 SMALL = {"01": ["--size", "2000"], "02": ["--level", "3"], "03": ["--level", "4"], "04": ["--level", "4"],
-         "05": ["--size", "40"], "06": ["--figures", "2", "--epochs", "2"], "07": ["-k", "8", "--processes", "1"]}
+         "05": ["--size", "40"], "06": ["--figures", "2", "--epochs", "2"], "07": ["-k", "8", "--processes", "1"],
+         "08": ["--figures", "1", "--epochs", "2"]}
 EXAMPLES = sorted((HOME / "examples/python").glob("0*.py"))
 
 
@@ -19,7 +20,7 @@ def test_every_example_has_a_small_size():
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
 def test_examples_run(path):
-    if path.stem in ("06_segment_shapes", "07_dataset"):
+    if path.stem in ("06_segment_shapes", "07_dataset", "08_diffusion_net"):
         pytest.importorskip("torch")
     result = subprocess.run([sys.executable, str(path), *SMALL[path.name[:2]]], capture_output=True, text=True, timeout=600)
     assert result.returncode == 0, result.stderr

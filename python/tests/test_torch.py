@@ -30,6 +30,16 @@ def test_edges_are_the_entries_of_the_maps(sphere):
     assert ahm.torch.edges(ahm.local_maps(sphere, 0.4, transport=False)).transport is None
 
 
+def test_quality_is_that_of_the_maps(sphere):
+    maps = ahm.local_maps(sphere, 0.4, quality=True)
+    quality = ahm.torch.edges(maps).quality
+    np.testing.assert_allclose(quality, maps.quality, rtol=1e-6)
+    data = as_data(sphere.points, sphere.faces)
+    torch.testing.assert_close(ahm.torch.LocalMaps(radius=0.4, quality=True)(data).quality, quality)
+    assert ahm.torch.edges(ahm.local_maps(sphere, 0.4)).quality is None
+    assert not hasattr(ahm.torch.LocalMaps(radius=0.4)(as_data(sphere.points, sphere.faces)), "quality")
+
+
 def test_messages_of_a_constant_field_on_a_plane_agree(flat_surfaces):
     """Vectors of the neighbors, transported to the source, are the vector there."""
     plane = flat_surfaces["triangles"]
@@ -60,7 +70,7 @@ def test_a_transform_fills_data_of_meshes_and_clouds(sphere):
         torch.testing.assert_close(getattr(mesh, name), getattr(expected, name))
     cloud = transform(as_data(sphere.points))
     torch.testing.assert_close(cloud.log, ahm.torch.edges(ahm.local_maps(ahm.PointCloud(sphere.points), k=12)).log)
-    assert repr(copy.deepcopy(transform)) == "ahm.torch.LocalMaps(k=12, threads=0, method='auto')"
+    assert repr(copy.deepcopy(transform)) == "ahm.torch.LocalMaps(k=12, quality=False, threads=0, method='auto')"
 
 
 def as_dictionary(data):

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <memory>
@@ -12,6 +13,7 @@
 #include "ahm/error.hpp"
 #include "ahm/grid/grid_graph.hpp"
 #include "ahm/maps/local_maps.hpp"
+#include "ahm/maps/quality.hpp"
 #include "ahm/pointcloud/point_cloud_surface.hpp"
 #include "ahm/surface/polar_map_solver.hpp"
 #include "ahm/surface/row_local_maps.hpp"
@@ -95,6 +97,80 @@ TEST(LocalPolarMaps, ArePartsOfWholeMapsOnClouds) {
   const auto noisy = noisy_cloud(torus(1500), 0.3 * edge_of(clean.graph()));
   expect_parts_of_whole_maps(PolarMapSolver(noisy), 4 * edge_of(noisy.graph()), 1e-12);
   expect_parts_of_whole_maps(PolarMapSolver(noisy, {.windows = 0}), 4 * edge_of(noisy.graph()), 1e-12);
+}
+
+/// Qualities of local and whole maps at vertices whose neighbors the local map contains. Local maps have no other edges.
+std::vector<std::array<double, 2>> qualities(const PolarMapSolver& solver, double radius) {
+  const TangentGraph& graph = solver.graph();
+  const std::vector<Vertex> sources = some_vertices(graph);
+  const LocalMaps maps = solver.local_maps(sources, {.radius = radius, .quality = true});
+  std::vector<std::array<double, 2>> result;
+  for (std::size_t s = 0; s < sources.size(); ++s) {
+    const std::vector<double> whole = map_quality(graph, solver.log_map(sources[s]));
+    const auto first = maps.neighbors.begin() + maps.indptr[s], last = maps.neighbors.begin() + maps.indptr[s + 1];
+    for (auto at = first; at != last; ++at)
+      if (std::ranges::all_of(graph.star(at->index).neighbors,
+                              [&](Index j) { return std::find(first, last, Vertex(j)) != last; }))
+        result.push_back({maps.quality[to_size(at - maps.neighbors.begin())], whole[at->index]});
+  }
+  return result;
+}
+
+TEST(LocalPolarMaps, HaveTheQualityOfWholeMaps) {
+  // The long tube of this torus is thinner than the radius, so maps contain cut loci.
+  const auto mesh = surface_of(torus(1500));
+  Index doubtful = 0;
+  for (const Offset windows : {Offset{0}, Offset{1} << 17})
+    for (const auto& [local, whole] : qualities(PolarMapSolver(mesh, {.windows = windows}), 1.8)) {
+      ASSERT_NEAR(local, whole, 1e-9);
+      doubtful += whole < reliable_quality;
+    }
+  EXPECT_GT(doubtful, 50);
+  const auto clean = pointcloud::PointCloudSurface::build(torus(1500).positions);
+  const auto noisy = noisy_cloud(torus(1500), 0.3 * edge_of(clean.graph()));
+  for (const TangentGraph* graph : {&clean.graph(), &noisy.graph()}) {
+    const PolarMapSolver solver(graph == &clean.graph() ? clean : noisy);
+    const auto found = qualities(solver, 5 * edge_of(*graph));
+    EXPECT_GT(found.size(), 200u);
+    for (const auto& [local, whole] : found) ASSERT_NEAR(local, whole, 1e-9);
+  }
+  EXPECT_TRUE(PolarMapSolver(mesh).local_maps(some_vertices(mesh.graph()), {.radius = 0.5}).quality.empty());
+}
+
+TEST(LocalMaps, ContainEveryCopyOfAPoint) {
+  std::vector<Vec3> points = torus(600).positions;
+  const auto plain = pointcloud::PointCloudSurface::build(points);
+  const std::size_t n = points.size();
+  for (std::size_t k = 0; k < n; k += 7) points.push_back(points[k]);
+  const auto copied = pointcloud::PointCloudSurface::build(points);
+  ASSERT_EQ(copied.graph().size(), plain.graph().size());
+  const double radius = 3 * edge_of(plain.graph());
+  for (const Method method : {Method::polar, Method::heat}) {
+    const RowLocalMaps single = row_local_maps(plain, {.radius = radius, .method = method}),
+                       maps = row_local_maps(copied, {.radius = radius, .method = method});
+    const auto original = [&](Row row) {
+      return to_size(row.index) < n ? to_size(row.index) : 7 * (to_size(row.index) - n);
+    };
+    for (std::size_t r = 0; r < points.size(); ++r) {
+      const std::size_t s = original(Row(static_cast<Index>(r)));
+      EXPECT_EQ(maps.neighbors[to_size(maps.indptr[r])], Row(static_cast<Index>(r)));
+      std::map<std::size_t, double> expected, found;
+      for (Offset e = single.indptr[s]; e < single.indptr[s + 1]; ++e)
+        expected[to_size(single.neighbors[e].index)] = single.weights[e];
+      Offset copies = 0;
+      for (Offset e = maps.indptr[r]; e < maps.indptr[r + 1]; ++e) {
+        copies += to_size(maps.neighbors[e].index) >= n;
+        found[original(maps.neighbors[e])] += maps.weights[e];
+      }
+      ASSERT_EQ(found.size(), expected.size());
+      for (const auto& [row, weight] : expected) ASSERT_NEAR(found[row], weight, 1e-12);
+      EXPECT_EQ(copies, std::ranges::count_if(expected, [](const auto& one) { return one.first % 7 == 0; }));
+    }
+    const RowLocalMaps nearest = row_local_maps(copied, {.k = 5, .method = method});
+    for (std::size_t r = 0; r < points.size(); ++r) EXPECT_EQ(nearest.indptr[r + 1] - nearest.indptr[r], 5);
+    const std::array<SurfacePoint, 1> last{Row(static_cast<Index>(points.size()) - 1)};
+    EXPECT_EQ(row_local_maps(copied, last, {.k = 5, .method = method}).neighbors[0], std::get<Row>(last[0]));
+  }
 }
 
 TEST(LocalPolarMaps, AreExactOnPlanes) {

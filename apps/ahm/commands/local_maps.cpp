@@ -182,7 +182,8 @@ void run(const LocalMapsOptions& options) {
   map_options.heat = options.solve.diffusion();
   map_options.memory = options.solve.memory;
   map_options.heat.progress = journal.progress();
-  const RowLocalMaps maps = row_local_maps(input.surface(), vertices, map_options);
+  const std::vector<SurfacePoint> sources(wanted.begin(), wanted.end());
+  const RowLocalMaps maps = row_local_maps(input.surface(), sources, map_options);
 
   if (std::any_of(maps.weights.begin(), maps.weights.end(), [](double w) { return std::isnan(w); }))
     journal.add_warning("weight: the squares of the lengths overflow; they are written as nan");

@@ -92,6 +92,7 @@ std::vector<std::uint64_t> identity_of(const TiledGraph& graph, std::size_t tile
 LocalFeatures checked_features(const TiledGraph& graph, const TiledLocalMapOptions& options) {
   if (!(options.maps.radius > 0) || !std::isfinite(options.maps.radius))
     throw InvalidArgument("radius is " + detail::number(options.maps.radius) + "; it must be finite and > 0");
+  if (options.maps.quality) throw InvalidArgument("quality: local maps of tiles have none");
   return local_features(options.features, graph, options.maps.radius);
 }
 

@@ -367,7 +367,7 @@ LocalMaps PolarMapSolver::local_maps(std::span<const Source> sources, const Loca
     return [&, fronts = std::make_shared<Fronts>(*this), small = small_map_options(options)](
                std::size_t s, double radius) mutable -> const Wavefront& {
       small.radius = radius;
-      return fronts->around(sources[s], seeds(s), small, false);
+      return fronts->around(sources[s], seeds(s), small, options.quality);
     };
   };
   return local_polar_maps(*graph_, sources, options, make_front);

@@ -1,7 +1,10 @@
 #include <algorithm>
 #include <numeric>
+#include <span>
 #include <string>
+#include <unordered_map>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "ahm/error.hpp"
@@ -77,39 +80,92 @@ bool has_virtual_vertices(const RowMap& rows) {
   return false;
 }
 
-/// Keeps the entries on rows of the input, at most `most` per source (0: all). Drops those on virtual vertices.
-RowLocalMaps keep_rows(LocalMaps&& maps, const RowMap& rows, Index most) {
-  const auto d = static_cast<std::size_t>(maps.dimension);
-  const std::size_t width = maps.transport_width();
-  std::size_t kept = 0;
-  std::vector<Row> neighbors(maps.neighbors.size());
-  const auto move = [&](std::vector<double>& values, std::size_t w, std::size_t from) {
-    std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(w * from), w,
-                values.begin() + static_cast<std::ptrdiff_t>(w * kept));
-  };
+/// The rows of the vertices that several rows share: merged points.
+class SharedVertices {
+ public:
+  explicit SharedVertices(const RowMap& rows) {
+    for (Row row(0); row.index < rows.row_count(); ++row.index)
+      for (const Vertex vertex : rows.vertices(row))
+        if (const Row first = *rows.row(vertex); first != row) {
+          std::vector<Row>& all = rows_[vertex.index];
+          if (all.empty()) all.push_back(first);
+          all.push_back(row);
+        }
+  }
+  bool empty() const { return rows_.empty(); }
+  /// The rows of a vertex, in ascending order; empty if it has at most one.
+  std::span<const Row> operator[](Vertex vertex) const {
+    const auto found = rows_.find(vertex.index);
+    return found == rows_.end() ? std::span<const Row>() : std::span<const Row>(found->second);
+  }
+
+ private:
+  std::unordered_map<Index, std::vector<Row>> rows_;
+};
+
+/// The values of some entries. @param width  numbers per entry
+std::vector<double> entries_of(std::vector<double> values, std::span<const std::size_t> entries, std::size_t width) {
+  std::vector<double> result;
+  result.reserve(values.empty() ? 0 : width * entries.size());
+  for (std::size_t k = 0; k < entries.size() && !values.empty(); ++k)
+    result.insert(result.end(), values.begin() + static_cast<std::ptrdiff_t>(width * entries[k]),
+                  values.begin() + static_cast<std::ptrdiff_t>(width * (entries[k] + 1)));
+  return result;
+}
+
+/// Replaces vertices by their rows, at most `most` per source (0: all). Drops virtual vertices. Of a shared vertex every row is an
+/// entry with an equal part of its weight.
+/// @param own  row of each source, which comes first among the rows of its vertex; empty: unknown
+RowLocalMaps on_rows(LocalMaps&& maps, const RowMap& rows, const SharedVertices& shared, std::span<const Row> own,
+                     Index most) {
+  std::vector<std::size_t> entries;
+  std::vector<Row> neighbors;
+  std::vector<std::pair<std::size_t, double>> parts;  // entries on shared vertices, and their part of the weight
+  entries.reserve(maps.neighbors.size()), neighbors.reserve(maps.neighbors.size());
   for (std::size_t s = 0; s + 1 < maps.indptr.size(); ++s) {
     const auto begin = static_cast<std::size_t>(maps.indptr[s]), end = static_cast<std::size_t>(maps.indptr[s + 1]);
-    maps.indptr[s] = static_cast<Offset>(kept);
+    const std::size_t first = neighbors.size();
+    maps.indptr[s] = static_cast<Offset>(first);
+    const auto add = [&](std::size_t e, Row row, std::size_t part) {
+      if (most > 0 && neighbors.size() - first == static_cast<std::size_t>(most)) return;
+      if (part > 1) parts.emplace_back(neighbors.size(), 1.0 / static_cast<double>(part));
+      entries.push_back(e), neighbors.push_back(row);
+    };
     for (std::size_t e = begin; e < end; ++e) {
       const std::optional<Row> row = rows.row(maps.neighbors[e]);
-      const auto taken = static_cast<Offset>(kept) - maps.indptr[s];
-      if (!row || (most > 0 && taken == most)) continue;
-      neighbors[kept] = *row;
-      move(maps.distances, 1, e), move(maps.weights, 1, e), move(maps.logs, d, e), move(maps.transports, width, e);
-      ++kept;
+      if (!row) continue;
+      const std::span<const Row> all = shared[maps.neighbors[e]];
+      if (all.empty()) {
+        add(e, *row, 1);
+        continue;
+      }
+      const bool is_source = e == begin && !own.empty() && std::ranges::find(all, own[s]) != all.end();
+      if (is_source) add(e, own[s], all.size());
+      for (const Row one : all)
+        if (!is_source || one != own[s]) add(e, one, all.size());
     }
   }
-  maps.indptr.back() = static_cast<Offset>(kept);
-  neighbors.resize(kept), maps.distances.resize(kept), maps.weights.resize(kept);
-  maps.logs.resize(d * kept), maps.transports.resize(width * kept);
+  maps.indptr.back() = static_cast<Offset>(neighbors.size());
+  const bool unchanged = parts.empty() && entries.size() == maps.neighbors.size();
+  if (!unchanged) {
+    maps.distances = entries_of(std::move(maps.distances), entries, 1);
+    maps.weights = entries_of(std::move(maps.weights), entries, 1);
+    maps.logs = entries_of(std::move(maps.logs), entries, static_cast<std::size_t>(maps.dimension));
+    maps.transports = entries_of(std::move(maps.transports), entries, maps.transport_width());
+    maps.quality = entries_of(std::move(maps.quality), entries, 1);
+    for (const auto& [entry, part] : parts) maps.weights[entry] *= part;
+  }
   return std::move(maps).renamed(std::move(neighbors));
 }
 
 /// Local maps by rows.
-/// @param maps  maps(options): local maps of the sources
+/// @param maps_of  maps_of(options): local maps of the sources
+/// @param own      row of each source; empty: unknown
 template <class Maps>
-RowLocalMaps to_rows(const Surface& surface, const LocalMapOptions& options, const Maps& maps_of) {
+RowLocalMaps to_rows(const Surface& surface, const LocalMapOptions& options, const Maps& maps_of,
+                     std::span<const Row> own = {}) {
   const RowMap& rows = surface.rows();
+  const SharedVertices shared(rows);
   const bool all_on_rows = !has_virtual_vertices(rows);
   LocalMapOptions wanted = options;
   wanted.bound_by_straight_line = true;
@@ -117,7 +173,7 @@ RowLocalMaps to_rows(const Surface& surface, const LocalMapOptions& options, con
   while (true) {
     LocalMaps all = maps_of(wanted);
     const std::vector<Offset> found = all.indptr;
-    RowLocalMaps maps = keep_rows(std::move(all), rows, options.k);
+    RowLocalMaps maps = on_rows(std::move(all), rows, shared, own, options.k);
     if (all_on_rows || options.radius > 0 || wanted.k >= rows.vertex_count()) return maps;
     // Some of the nearest vertices may be virtual. Then more are requested, as long as there are more.
     bool enough = true;
@@ -131,20 +187,20 @@ RowLocalMaps to_rows(const Surface& surface, const LocalMapOptions& options, con
 /// The vertices of all rows that have one.
 struct AllRows {
   std::vector<Vertex> vertices;
-  std::vector<std::size_t> rows;
+  std::vector<Row> rows;
 
   explicit AllRows(const RowMap& map) {
     for (Row row(0); row.index < map.row_count(); ++row.index)
       if (const auto vertex = map.vertex(row)) {
         vertices.push_back(*vertex);
-        rows.push_back(static_cast<std::size_t>(row.index));
+        rows.push_back(row);
       }
   }
 
   /// Adds the rows without a vertex, which have no entries.
   RowLocalMaps spread(RowLocalMaps maps, Index row_count) const {
     std::vector<Offset> indptr(static_cast<std::size_t>(row_count) + 1, 0);
-    for (std::size_t k = 0; k < rows.size(); ++k) indptr[rows[k] + 1] = maps.indptr[k + 1] - maps.indptr[k];
+    for (std::size_t k = 0; k < rows.size(); ++k) indptr[rows[k].index + 1] = maps.indptr[k + 1] - maps.indptr[k];
     std::partial_sum(indptr.begin(), indptr.end(), indptr.begin());
     maps.indptr = std::move(indptr);
     return maps;
@@ -179,28 +235,55 @@ Method suggested_method(const Surface& surface, const LocalMapOptions& options) 
   return is_small ? Method::polar : surface.suggested_method();
 }
 
+namespace {
+
+/// The rows of points; -1 where a point is not a row.
+std::vector<Row> own_rows(std::span<const SurfacePoint> points) {
+  std::vector<Row> rows;
+  for (const SurfacePoint& point : points) {
+    const auto* row = std::get_if<Row>(&point);
+    rows.push_back(row ? *row : Row(-1));
+  }
+  return rows;
+}
+
+RowLocalMaps local_maps_of(const PolarMapSolver& solver, std::span<const Vertex> sources,
+                           const LocalMapOptions& options, std::span<const Row> own) {
+  return to_rows(
+      surface_of(solver), options, [&](const LocalMapOptions& o) { return solver.local_maps(sources, o); }, own);
+}
+
+RowLocalMaps local_maps_of(const Surface& surface, std::span<const Vertex> sources, const LocalMapOptions& options,
+                           std::span<const Row> own) {
+  if (!is_heat(surface, options))
+    return local_maps_of(PolarMapSolver(surface, {.threads = options.heat.threads}), sources, options, own);
+  return to_rows(
+      surface, with_heat(options), [&](const LocalMapOptions& o) { return local_maps(surface.graph(), sources, o); },
+      own);
+}
+
+}  // namespace
+
 RowLocalMaps row_local_maps(const PolarMapSolver& solver, std::span<const Vertex> sources,
                             const LocalMapOptions& options) {
-  return to_rows(surface_of(solver), options, [&](const LocalMapOptions& o) { return solver.local_maps(sources, o); });
+  return local_maps_of(solver, sources, options, {});
 }
 
 RowLocalMaps row_local_maps(const PolarMapSolver& solver, std::span<const SurfacePoint> sources,
                             const LocalMapOptions& options, const std::optional<Vec3>& u_axis) {
-  return to_rows(surface_of(solver), options,
-                 [&](const LocalMapOptions& o) { return solver.local_maps(sources, o, u_axis); });
+  return to_rows(
+      surface_of(solver), options, [&](const LocalMapOptions& o) { return solver.local_maps(sources, o, u_axis); },
+      own_rows(sources));
 }
 
 RowLocalMaps row_local_maps(const PolarMapSolver& solver, const LocalMapOptions& options) {
   const RowMap& rows = surface_of(solver).rows();
   const AllRows all(rows);
-  return all.spread(row_local_maps(solver, all.vertices, options), rows.row_count());
+  return all.spread(local_maps_of(solver, all.vertices, options, all.rows), rows.row_count());
 }
 
 RowLocalMaps row_local_maps(const Surface& surface, std::span<const Vertex> sources, const LocalMapOptions& options) {
-  if (!is_heat(surface, options))
-    return row_local_maps(PolarMapSolver(surface, {.threads = options.heat.threads}), sources, options);
-  return to_rows(surface, with_heat(options),
-                 [&](const LocalMapOptions& o) { return local_maps(surface.graph(), sources, o); });
+  return local_maps_of(surface, sources, options, {});
 }
 
 RowLocalMaps row_local_maps(const Surface& surface, std::span<const SurfacePoint> sources,
@@ -210,7 +293,10 @@ RowLocalMaps row_local_maps(const Surface& surface, std::span<const SurfacePoint
   std::vector<Source> from;
   from.reserve(sources.size());
   for (const SurfacePoint& point : sources) from.push_back(surface.source(point, u_axis).source);
-  return row_local_maps(surface, std::span<const Source>(from), with_heat(options));
+  return to_rows(
+      surface, with_heat(options),
+      [&](const LocalMapOptions& o) { return local_maps(surface.graph(), std::span<const Source>(from), o); },
+      own_rows(sources));
 }
 
 RowLocalMaps row_local_maps(const Surface& surface, std::span<const Source> sources, const LocalMapOptions& options) {
@@ -219,7 +305,7 @@ RowLocalMaps row_local_maps(const Surface& surface, std::span<const Source> sour
 
 RowLocalMaps row_local_maps(const Surface& surface, const LocalMapOptions& options) {
   const AllRows all(surface.rows());
-  return all.spread(row_local_maps(surface, all.vertices, options), surface.rows().row_count());
+  return all.spread(local_maps_of(surface, all.vertices, options, all.rows), surface.rows().row_count());
 }
 
 }  // namespace ahm

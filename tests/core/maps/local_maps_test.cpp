@@ -4,6 +4,7 @@
 #include <set>
 
 #include "ahm/conformance/triangle_meshes.hpp"
+#include "ahm/maps/quality.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "core/solved_graph.hpp"
 
@@ -110,6 +111,22 @@ TEST(LocalMaps, ContainOnlyTheNearest) {
     ASSERT_EQ(few.indptr[s + 1] - few.indptr[s], 9);
     for (Offset k = 0; k < 9; ++k) ASSERT_EQ(few.neighbors[few.indptr[s] + k], all.neighbors[all.indptr[s] + k]);
   }
+}
+
+TEST(LocalMaps, HaveALowQualityNextToTheCutLocus) {
+  const CsrGraph plane(planar_triangulation(20).data), sphere(sphere_graph(500));
+  for (const double q : local_maps(plane, every(37, plane), {.radius = 0.3, .quality = true}).quality)
+    EXPECT_NEAR(q, 1, 1e-9);
+  const LocalMaps maps = local_maps(sphere, every(97, sphere), {.radius = 3.5, .quality = true});
+  ASSERT_EQ(maps.quality.size(), maps.neighbors.size());
+  double lowest = 1;
+  for (std::size_t e = 0; e < maps.quality.size(); ++e) {
+    EXPECT_GT(maps.quality[e], maps.distances[e] < 1 ? reliable_quality : 0);
+    EXPECT_LE(maps.quality[e], 1);
+    lowest = std::min(lowest, maps.quality[e]);
+  }
+  EXPECT_LT(lowest, 0.3);
+  EXPECT_TRUE(local_maps(plane, every(37, plane), {.radius = 0.3}).quality.empty());
 }
 
 TEST(LocalMaps, TakeSourcesOfAnyKind) {

@@ -50,6 +50,7 @@
 #include "ahm/surface/exact/exact_geodesics.hpp"
 #include "ahm/surface/exact/exact_map.hpp"
 #include "ahm/surface/exact/flat_triangles.hpp"
+#include "ahm/surface/exact/geodesic_derivatives.hpp"
 #include "ahm/surface/exact/geodesic_path.hpp"
 #include "ahm/surface/exact/polyhedral_surface.hpp"
 #include "ahm/surface/mesh_repair.hpp"

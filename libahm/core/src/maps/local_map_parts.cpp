@@ -16,9 +16,10 @@ namespace ahm {
 namespace {
 
 /// Smallest number of bytes per entry of the result.
-double entry_bytes(const TangentGraph& graph) {
-  return static_cast<double>(2 * sizeof(Index) + sizeof(double) * (2 + static_cast<std::size_t>(graph.dimension()) +
-                                                                   graph.transport_layout().width()));
+double entry_bytes(const TangentGraph& graph, bool quality) {
+  return static_cast<double>(2 * sizeof(Index) +
+                             sizeof(double) * (2 + (quality ? 1 : 0) + static_cast<std::size_t>(graph.dimension()) +
+                                               graph.transport_layout().width()));
 }
 
 /// Concatenates a column of all entries, and frees the parts one by one.
@@ -56,7 +57,8 @@ void check_memory(const TangentGraph& graph, std::span<const Source> sources,
                   const std::function<double(std::size_t)>& radius, const LocalMapOptions& options) {
   const double memory = options.memory > 0 ? static_cast<double>(options.memory) : machine_memory();
   if (!(memory > 0) || sources.empty()) return;
-  const double half = 0.5 * static_cast<double>(sources.size()) * entry_bytes(graph), enough = memory / half;
+  const double half = 0.5 * static_cast<double>(sources.size()) * entry_bytes(graph, options.quality),
+               enough = memory / half;
   if (enough >= graph.size()) return;
   constexpr std::size_t most = 15;
   const std::size_t samples = std::min(most, sources.size());
@@ -94,6 +96,8 @@ LocalMaps joined(const TangentGraph& graph, std::vector<Offset> indptr, std::vec
     join(entries, &LocalEntries::distances, total, maps.distances);
     join(entries, &LocalEntries::transports, total * maps.transport_width(), maps.transports);
     join(entries, &LocalEntries::logs, total * static_cast<std::size_t>(graph.dimension()), maps.logs);
+    if (std::ranges::any_of(entries, [](const LocalEntries& e) { return !e.quality.empty(); }))
+      join(entries, &LocalEntries::quality, total, maps.quality);
   };
   detail::run_both(threads, join_numbers, join_vertices);
   return maps;

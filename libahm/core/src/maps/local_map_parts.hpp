@@ -33,7 +33,7 @@ void check_memory(const TangentGraph& graph, std::span<const Source> sources,
 /// The entries of one or several sources, in their order.
 struct LocalEntries {
   std::vector<Vertex> vertices;
-  std::vector<double> logs, distances, transports;
+  std::vector<double> logs, distances, transports, quality;
 };
 
 /// Concatenates all entries. Frees them one by one, so that the peak memory is little more than the result.

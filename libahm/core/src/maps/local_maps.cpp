@@ -8,6 +8,7 @@
 #include <string>
 
 #include "ahm/error.hpp"
+#include "ahm/graph/components.hpp"
 #include "ahm/graph/validate.hpp"
 #include "ahm/maps/straight_line.hpp"
 #include "ahm/util/memory.hpp"
@@ -16,6 +17,7 @@
 #include "ahm/util/text.hpp"
 #include "ahm/util/vec.hpp"
 #include "maps/affine_heat.hpp"
+#include "maps/jump.hpp"
 #include "maps/local_map_parts.hpp"
 #include "maps/one_rings.hpp"
 #include "maps/patch_maps.hpp"
@@ -278,6 +280,7 @@ class Worker {
     for (const auto& [vertex, known] : SourceVertices(patch.sources[m], graph_.dimension()))
       std::copy(known.vector.begin(), known.vector.end(), phi_.begin() + static_cast<std::ptrdiff_t>(vertex * d_));
     entries = {};
+    if (options_.quality) add_quality(patch, distance, entries);
     const std::size_t size = order_.size();
     entries.vertices.reserve(size);
     entries.distances.reserve(size);
@@ -294,6 +297,26 @@ class Worker {
       entries.transports.insert(entries.transports.end(), U.begin(), U.end());
     }
     return Outcome::complete;
+  }
+
+  /// Adds the quality of the vertices in `order_`.
+  /// @param distance  of each vertex of the patch
+  void add_quality(const Patch& patch, std::span<const double> distance, LocalEntries& entries) const {
+    const double farthest = order_.empty() ? 0 : order_.back().first,
+                 h = graph_.length_unit() * graph_.mean_edge_length();
+    const auto phi = [&](Index k) { return std::span(phi_).subspan(to_size(k) * d_, d_); };
+    for (const auto& [from_source, k] : order_) {
+      const auto length_in_map = [&, here = k](Index j) {
+        if (!(distance[to_size(j)] <= farthest)) return std::numeric_limits<double>::quiet_NaN();
+        double apart = 0;
+        for (std::size_t a = 0; a < d_; ++a) apart = std::hypot(apart, phi(j)[a] - phi(here)[a]);
+        return apart;
+      };
+      const Vertex vertex(patch.vertices[to_size(k)]);
+      entries.quality.push_back(quality_of(std::abs(length(phi(k)) - from_source),
+                                           jump_at(patch.graph, k, length_in_map), from_source,
+                                           std::min(h, mean_edge(graph_, std::span(&vertex, 1)))));
+    }
   }
 
   const TangentGraph& graph_;

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "ahm/error.hpp"
+#include "ahm/graph/components.hpp"
 #include "ahm/maps/local_maps.hpp"
 #include "ahm/maps/straight_line.hpp"
 #include "ahm/util/memory.hpp"
@@ -17,6 +18,7 @@
 #include "ahm/util/vec.hpp"
 #include "maps/affine_heat.hpp"
 #include "maps/carried_axes.hpp"
+#include "maps/jump.hpp"
 #include "maps/local_map_parts.hpp"
 
 namespace ahm {
@@ -47,8 +49,12 @@ class Collector {
   /// Appends the entries of source s, nearest first.
   void collect(std::size_t s, LocalEntries& entries) {
     const Wavefront& front = find(s);
+    // The front is final up to the farthest neighbor.
+    double farthest = 0;
+    for (const auto& [distance, vertex] : order_) farthest = std::max(farthest, front.distance(Vertex(vertex)));
     for (const auto& [distance, vertex] : order_) {
       const Vertex v(vertex);
+      if (options_.quality) entries.quality.push_back(quality(front, v, distance, farthest));
       entries.vertices.push_back(v);
       entries.distances.push_back(distance);
       const Vec2 log = coordinates(front, v);
@@ -100,6 +106,19 @@ class Collector {
       if (distance <= radius && std::isfinite(log[0]) && std::isfinite(log[1])) order_.emplace_back(distance, v.index);
     }
     std::sort(order_.begin(), order_.end());
+  }
+
+  /// @param farthest  the map contains the vertices up to this distance on the front
+  double quality(const Wavefront& front, Vertex v, double distance, double farthest) const {
+    const Vec2 here = coordinates(front, v);
+    const auto length_in_map = [&](Index j) {
+      return front.distance(Vertex(j)) <= farthest ? length(coordinates(front, Vertex(j)) - here)
+                                                   : std::numeric_limits<double>::quiet_NaN();
+    };
+    const double error = distance > 0 ? distance * front.direction_error(v) : 0;
+    const double h = graph_.length_unit() * graph_.mean_edge_length();
+    return quality_of(std::isfinite(error) ? error : 0, jump_at(graph_, v.index, length_in_map), distance,
+                      std::min(h, mean_edge(graph_, std::span(&v, 1))));
   }
 
   static Vec2 coordinates(const Wavefront& front, Vertex v) {
@@ -158,7 +177,7 @@ LocalMaps local_polar_maps(const TangentGraph& graph, std::span<const Source> so
         indptr[static_cast<std::size_t>(s) + 1] = static_cast<Offset>(entries.vertices.size() - before);
       }
       entries.vertices.shrink_to_fit(), entries.distances.shrink_to_fit();
-      entries.logs.shrink_to_fit(), entries.transports.shrink_to_fit();
+      entries.logs.shrink_to_fit(), entries.transports.shrink_to_fit(), entries.quality.shrink_to_fit();
       const detail::Lock lock(mutex);
       idle.push_back(std::move(collector));
       done += end - begin;

@@ -13,32 +13,24 @@
 #include "ahm/util/vec.hpp"
 #include "maps/affine_heat.hpp"
 #include "maps/carried_axes.hpp"
+#include "maps/jump.hpp"
 
 namespace ahm {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// Half of the largest excess of an edge's length in the map over its length, for each vertex, over neighbors with coordinates; world
-/// units.
+/// The jump at each vertex, over neighbors with coordinates; world units.
 std::vector<double> jumps(const TangentGraph& graph, std::span<const double> coordinates,
                           std::span<const Status> status) {
-  constexpr double rounding = 1e-9;
-  const double unit = graph.length_unit();
   std::vector<double> jump(status.size(), nan);
-  for (Index i = 0; i < graph.size(); ++i) {
-    if (status[i] != Status::ok) continue;
-    jump[i] = 0;
-    const Star star = graph.star(i);
-    for (std::size_t e = 0; e < star.degree(); ++e) {
-      const Index j = star.neighbors[e];
-      if (status[j] != Status::ok) continue;
-      const double apart =
-          length(Vec2{coordinates[2 * j] - coordinates[2 * i], coordinates[2 * j + 1] - coordinates[2 * i + 1]});
-      const double excess = (apart - unit * length(star.log(e))) / 2;
-      if (excess > rounding * apart) jump[i] = std::max(jump[i], excess);
-    }
-  }
+  for (Index i = 0; i < graph.size(); ++i)
+    if (status[i] == Status::ok)
+      jump[i] = jump_at(graph, i, [&](Index j) {
+        return status[j] != Status::ok ? nan
+                                       : length(Vec2{coordinates[2 * j] - coordinates[2 * i],
+                                                     coordinates[2 * j + 1] - coordinates[2 * i + 1]});
+      });
   return jump;
 }
 

@@ -14,12 +14,11 @@
 #include "ahm/util/text.hpp"
 #include "ahm/util/vec.hpp"
 #include "heat/component_scales.hpp"
+#include "maps/jump.hpp"
 
 namespace ahm {
 namespace {
 
-/// The expected relative error at which the quality is 0.5.
-constexpr double doubtful_error = 0.1;
 /// The radius of the front divided by the radius of the map. The front goes farther because its distances differ from those of the map.
 constexpr double reach = 1.25;
 
@@ -98,14 +97,12 @@ std::vector<double> quality_beside(const TangentGraph& graph, const LogMap& map,
     double d = map.distances()[i];
     if (const auto frame = source ? graph.frame(vertex.index) : std::nullopt)
       d = std::max(d, distance(frame->origin, *source));
-    const double away = std::max(d, std::min(h, mean_edge(graph, std::span(&vertex, 1))));
     const auto error = [&] {
       if (map.method() == Method::exact) return 0.0;
       if (map.method() == Method::polar) return map.error_estimate()[i];
       return error_of_heat(map, front, vertex.index, std::span(vectors).subspan(i * dimension, dimension), d, h);
     };
-    const double doubt = std::hypot(error(), map.spread()[i] / 3) / away / doubtful_error;
-    quality[i] = 1 / (1 + doubt * doubt);
+    quality[i] = quality_of(error(), map.spread()[i], d, std::min(h, mean_edge(graph, std::span(&vertex, 1))));
   });
   return quality;
 }

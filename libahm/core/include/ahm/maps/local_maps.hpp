@@ -48,6 +48,8 @@ struct LocalMapOptions {
   /// Increase distances that are shorter than the straight line in space to its length, as in results by row. The radius and `k`
   /// apply to the increased distances. Ignored if the graph has no frames.
   bool bound_by_straight_line = false;
+  /// Compute `LocalMaps::quality`. On clouds, polar maps take twice the time.
+  bool quality = false;
   /// Polar maps use `threads` and `progress` only. Heat: the mean edge length h is measured on the whole graph.
   DiffusionOptions heat = {};
   std::size_t memory = 0;  ///< bytes available for the result; 0: the memory of the machine
@@ -69,6 +71,10 @@ struct LocalMapsOf {
   std::vector<double> distances;    ///< world units
   std::vector<double> weights;      ///< masses, world units to the power d; NaN out of range of double (`world_mass`)
   std::vector<double> transports;   ///< 2 numbers (cos, sin) or d x d, row major, per entry
+  /// How reliable each vector is, in (0, 1], as `map_quality`. The error of a polar map is that of its direction, and of a map by heat the
+  /// difference of |phi| and the distance. The spread is half of the largest excess of an edge's length in the map over its length, over the
+  /// neighbors within the radius. Empty unless requested.
+  std::vector<double> quality = {};
 
   Index sources() const noexcept { return static_cast<Index>(indptr.size()) - 1; }
   std::size_t transport_width() const { return TransportLayout{kind, dimension}.width(); }
@@ -79,7 +85,8 @@ struct LocalMapsOf {
     return {dimension,          kind,
             std::move(indptr),  std::move(names),
             std::move(logs),    std::move(distances),
-            std::move(weights), std::move(transports)};
+            std::move(weights), std::move(transports),
+            std::move(quality)};
   }
 };
 

@@ -24,8 +24,9 @@ using RowLocalMaps = LocalMapsOf<Row>;
 /// accurate as heat on noisy clouds, too (docs/results/local_maps.md), and ten times faster; otherwise `Surface::suggested_method`.
 Method suggested_method(const Surface& surface, const LocalMapOptions& options);
 
-/// Local maps with rows as neighbors: each vertex is replaced by its first row. Vertices without a row, as inside refined
-/// polygons, are omitted; `LocalMapOptions::k` counts the remaining ones. Distances are at least the straight-line
+/// Local maps with rows as neighbors: each vertex is replaced by its rows. Rows that share a vertex, as merged points, each have an entry,
+/// with an equal part of the weight. A source that is a row is its own first neighbor. Vertices without a row, as inside refined
+/// polygons, are omitted; `LocalMapOptions::k` counts the rows. Distances are at least the straight-line
 /// distance, as in `RowLogMap`.
 ///
 /// The method is that of the options, or `suggested_method`. Polar maps are ten to hundreds of times faster; heat is smoother on noisy clouds. These functions prepare the surface for polar maps in each call; with a
