@@ -168,16 +168,23 @@ void expect_spiral(const Mesh& mesh, double spacing, const std::function<double(
   EXPECT_GE(measures.covered, std::min(0.99, of_rings.covered));
   EXPECT_LE(measures.largest_gap, std::max(0.75, of_rings.largest_gap));
   EXPECT_LE(measures.double_covered, 0.01);
+  std::vector<Vec3> at;
   std::vector<double> turned, away;  // along the path: angle around the axis, distance from the edge in spacings
   for (const ToolPose& pose : path.poses) {
     if (pose.kind != ToolMotion::pass) continue;
     const double angle = std::atan2(pose.position[1], pose.position[0]), before = turned.empty() ? angle : turned.back();
     turned.push_back(before + std::remainder(angle - before, 2 * std::numbers::pi));
     away.push_back(distance_of(pose.position) / spacing);
+    at.push_back(pose.position);
   }
-  if (away.front() > away.back()) std::reverse(away.begin(), away.end()), std::reverse(turned.begin(), turned.end());
+  if (away.front() > away.back()) {
+    std::reverse(at.begin(), at.end());
+    std::reverse(turned.begin(), turned.end());
+    std::reverse(away.begin(), away.end());
+  }
   const double direction = turned.back() > turned.front() ? 1 : -1;
   std::size_t turn = 0, compared = 0;
+  double sum = 0;
   for (std::size_t k = 0; k < turned.size(); ++k) {
     if (k > 0) EXPECT_GT(direction * (turned[k] - turned[k - 1]), 0);
     while (turn < k && direction * (turned[k] - turned[turn + 1]) >= 2 * std::numbers::pi) ++turn;
@@ -186,12 +193,15 @@ void expect_spiral(const Mesh& mesh, double spacing, const std::function<double(
                      (direction * (turned[turn + 1] - turned[turn]));
     const double apart = away[k] - ((1 - t) * away[turn] + t * away[turn + 1]);
     EXPECT_GT(apart, 0.49);
-    EXPECT_LT(apart, 1.02);
     if (away[turn] < away.front() + 0.51 || away[k] > away.back() - 0.51) continue;
-    EXPECT_NEAR(apart, 1, 0.02);
+    // The path may rise by one face in one step.
+    const double turn_length = 2 * std::numbers::pi * std::hypot(at[k][0], at[k][1]) / spacing;
+    EXPECT_NEAR(apart, 1, 0.03 + 0.4 / turn_length);
+    sum += apart;
     ++compared;
   }
-  EXPECT_GT(compared, 100U);
+  ASSERT_GT(compared, 100U);
+  EXPECT_NEAR(sum / static_cast<double>(compared), 1, 0.01);
 }
 
 TEST(ToolPath, IsASpiralOnACylinder) {
@@ -224,7 +234,7 @@ TEST(ToolPath, SpiralsCoverAsSeparatePassesDo) {
   expect_path(icosphere(8), 0.1, AutomaticSeed{}, true);
   expect_path(torus(1000), 0.1, PlaneSeed{{0, 0, 0}, {0, 1, 0}}, true);
   expect_path(holed_plate(), 0.15, BoundarySeed{}, true);
-  expect_path(cylinder(3, true), 0.1, PlaneSeed{{0, 0, 1.5}, {0, 0, 1}}, true);
+  expect_path(cylinder(3, true), 0.15, PlaneSeed{{0, 0, 1.5}, {0, 0, 1}}, true);
   // Around the holes of the plate, the passes are open: they remain as they are.
   const auto plate = surface_of(holed_plate());
   const ToolPath path = tool_path(plate, {.spacing = 0.25, .spiral = true});
