@@ -72,6 +72,8 @@ class Riser {
   /// The level may fall behind at points that are lower than it; farther only around a peak.
   static constexpr double most_behind = 0.1;
   static constexpr int most_pivots = 1000;
+  /// Share of a side up to which the level may rise on it: the path stays off the points of the mesh.
+  static constexpr double most_along = 0.95;
 
   double value(Index point) const { return values_[to_size(point)]; }
 
@@ -81,8 +83,10 @@ class Riser {
     const Half to_apex = detail::next(entered), from_apex = detail::previous(entered);
     const double above = value(mesh_.tail(entered)), apex = value(mesh_.tail(from_apex));
     const bool is_apex_above = apex >= wanted_ || (above < wanted_ && apex >= above);
-    level_ = std::max(level_, std::min(wanted_, is_apex_above ? apex : above));
-    return is_apex_above ? to_apex : from_apex;
+    const Half side = is_apex_above ? to_apex : from_apex;
+    const double from = value(mesh_.tail(side)), to = value(mesh_.head(side));
+    level_ = std::max(level_, std::min(wanted_, from + most_along * (to - from)));
+    return side;
   }
   /// Place of the level on a side, from its tail.
   double share(Half side) const {
