@@ -226,8 +226,9 @@ TEST(ToolPath, IsASpiralOnASphericalCap) {
     const double angle = 2 * (1 - k / 24.0);
     profile.push_back({std::sin(angle), std::cos(angle)});
   }
-  expect_spiral(revolved(profile), 0.15,
-                [](const Vec3& p) { return 2 - std::acos(std::clamp(p[2] / norm(p), -1.0, 1.0)); });
+  for (const double spacing : {0.15, 2 / 12.87})  // with the second one, the pole is just below the end of the spiral
+    expect_spiral(revolved(profile), spacing,
+                  [](const Vec3& p) { return 2 - std::acos(std::clamp(p[2] / norm(p), -1.0, 1.0)); });
 }
 
 TEST(ToolPath, SpiralsCoverAsSeparatePassesDo) {

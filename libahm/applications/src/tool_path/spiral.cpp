@@ -52,14 +52,15 @@ class Riser {
     Half entered = -1;
     for (Half h = 3 * face; h < 3 * face + 3; ++h)
       if (value(mesh_.tail(h)) >= level_ && value(mesh_.head(h)) < level_) entered = h;
-    for (int pivots = 0; entered >= 0 && level_ < end_ && wanted_ - level_ < most_behind && pivots < most_pivots;) {
+    double walked = 0;
+    for (int steps = 0; entered >= 0 && level_ < end_ && wanted_ - level_ < most_behind && steps < most_steps; ++steps) {
       const Half side = leave(entered);
       curve_.points.push_back(on_side(side, share(side)));
       curve_.faces.push_back(entered / 3);
       const std::size_t n = curve_.points.size();
       const double length = distance(mesh_.position(curve_.points[n - 2]), mesh_.position(curve_.points[n - 1]));
-      pivots = length > 0 ? 0 : pivots + 1;
-      wanted_ = std::min(end_, wanted_ + length * slope());
+      if ((walked += length) > 1) walked = 0, steps = 0;
+      wanted_ += length * slope();
       entered = mesh_.mirrored[to_size(side)] != 0 ? -1 : mesh_.twin[to_size(side)];
     }
     return level_ >= end_;
@@ -71,7 +72,7 @@ class Riser {
  private:
   /// The level may fall behind at points that are lower than it; farther only around a peak.
   static constexpr double most_behind = 0.1;
-  static constexpr int most_pivots = 1000;
+  static constexpr int most_steps = 10'000;  ///< faces per spacing of length
   /// Share of a side up to which the level may rise on it: the path stays off the points of the mesh.
   static constexpr double most_along = 0.95;
 
@@ -82,10 +83,11 @@ class Riser {
   Half leave(Half entered) {
     const Half to_apex = detail::next(entered), from_apex = detail::previous(entered);
     const double above = value(mesh_.tail(entered)), apex = value(mesh_.tail(from_apex));
-    const bool is_apex_above = apex >= wanted_ || (above < wanted_ && apex >= above);
+    const double wanted = std::min(wanted_, end_);
+    const bool is_apex_above = apex >= wanted || (above < wanted && apex >= above);
     const Half side = is_apex_above ? to_apex : from_apex;
     const double from = value(mesh_.tail(side)), to = value(mesh_.head(side));
-    level_ = std::max(level_, std::min(wanted_, from + most_along * (to - from)));
+    level_ = std::max(level_, std::min(wanted, from + most_along * (to - from)));
     return side;
   }
   /// Place of the level on a side, from its tail.
