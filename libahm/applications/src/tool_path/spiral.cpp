@@ -57,6 +57,7 @@ class Riser {
       const Half side = leave(entered);
       curve_.points.push_back(on_side(side, share(side)));
       curve_.faces.push_back(entered / 3);
+      if (level_ >= std::min(wanted_, end_)) in_time_ = curve_.points.size();
       const std::size_t n = curve_.points.size();
       const double length = distance(mesh_.position(curve_.points[n - 2]), mesh_.position(curve_.points[n - 1]));
       if ((walked += length) > 1) walked = 0, steps = 0;
@@ -67,14 +68,19 @@ class Riser {
   }
 
   double level() const { return level_; }
-  MeshCurve curve() && { return std::move(curve_); }
+  /// The path without turns around a peak, where the level does not rise.
+  MeshCurve curve() && {
+    curve_.points.resize(in_time_);
+    curve_.faces.resize(in_time_ - 1);
+    return std::move(curve_);
+  }
 
  private:
   /// The level may fall behind at points that are lower than it; farther only around a peak.
   static constexpr double most_behind = 0.1;
   static constexpr int most_steps = 10'000;  ///< faces per spacing of length
   /// Share of a side up to which the level may rise on it: the path stays off the points of the mesh.
-  static constexpr double most_along = 0.95;
+  static constexpr double most_along = 0.995;
 
   double value(Index point) const { return values_[to_size(point)]; }
 
@@ -111,6 +117,7 @@ class Riser {
   double begin_ = 0, end_ = 0;
   double level_ = 0, wanted_ = 0;  ///< of the last point, and where it should be
   MeshCurve curve_;
+  std::size_t in_time_ = 1;  ///< points up to the last one where the level was not behind
 };
 
 /// The level curves of the passes, and which of them follow each other.
