@@ -186,8 +186,8 @@ void expect_spiral(const Mesh& mesh, double spacing, const std::function<double(
   std::size_t turn = 0, compared = 0;
   double sum = 0;
   for (std::size_t k = 0; k < turned.size(); ++k) {
-    if (k > 0)  // back by less than the chord error
-      EXPECT_GT(direction * (turned[k] - turned[k - 1]) * std::hypot(at[k][0], at[k][1]), -0.005 * spacing);
+    if (k > 0)  // around a vertex, the path may move back a little
+      EXPECT_GT(direction * (turned[k] - turned[k - 1]) * std::hypot(at[k][0], at[k][1]), -0.01 * spacing);
     while (turn < k && direction * (turned[k] - turned[turn + 1]) >= 2 * std::numbers::pi) ++turn;
     if (direction * (turned[k] - turned[turn]) < 2 * std::numbers::pi) continue;
     const double t = (direction * (turned[k] - turned[turn]) - 2 * std::numbers::pi) /
