@@ -39,9 +39,9 @@ void check_path_file(const OutputOptions& output, const PathFileOptions& options
   };
   for (const std::string& option : options.named)
     if (!is_used(option))
-      throw InvalidArgument(fmt::format("--output {}: {} has no effect on {}; leave it out", output.output, option,
-                                        extension == ".yaml" ? "a PoseArray, which has no times"
-                                                             : "a file of this format"));
+      throw InvalidArgument(
+          fmt::format("--output {}: {} has no effect on {}; leave it out", output.output, option,
+                      extension == ".yaml" ? "a PoseArray, which has no times" : "a file of this format"));
 }
 
 }  // namespace ahm::app

@@ -53,7 +53,8 @@ class Riser {
     for (Half h = 3 * face; h < 3 * face + 3; ++h)
       if (value(mesh_.tail(h)) >= level_ && value(mesh_.head(h)) < level_) entered = h;
     double walked = 0;
-    for (int steps = 0; entered >= 0 && level_ < end_ && wanted_ - level_ < most_behind && steps < most_steps; ++steps) {
+    for (int steps = 0; entered >= 0 && level_ < end_ && wanted_ - level_ < most_behind && steps < most_steps;
+         ++steps) {
       const Half side = leave(entered);
       curve_.points.push_back(on_side(side, share(side)));
       curve_.faces.push_back(entered / 3);

@@ -101,8 +101,9 @@ bool has_control_character(const std::string& text) {
   for (std::size_t k = 0; k < text.size(); ++k) {
     const auto byte = [&](std::size_t at) { return at < text.size() ? static_cast<unsigned char>(text[at]) : 0; };
     if (byte(k) < 0x20 || byte(k) == 0x7f) return true;
-    if (byte(k) == 0xc2 && byte(k + 1) >= 0x80 && byte(k + 1) < 0xa0) return true;                       // U+0080 to U+009F
-    if (byte(k) == 0xe2 && byte(k + 1) == 0x80 && (byte(k + 2) == 0xa8 || byte(k + 2) == 0xa9)) return true;  // U+2028, U+2029
+    if (byte(k) == 0xc2 && byte(k + 1) >= 0x80 && byte(k + 1) < 0xa0) return true;  // U+0080 to U+009F
+    if (byte(k) == 0xe2 && byte(k + 1) == 0x80 && (byte(k + 2) == 0xa8 || byte(k + 2) == 0xa9))
+      return true;  // U+2028, U+2029
   }
   return false;
 }
