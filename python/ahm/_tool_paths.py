@@ -56,7 +56,7 @@ def isolines(surface: SurfaceLike, values: Vector, levels: Union[float, Vector, 
 
 
 _KINDS = np.array(["pass", "link", "approach", "retreat"])
-_ORIGINS = ("seed", "level", "cut_locus", "boundary")
+_ORIGINS = ("seed", "level", "cut_locus", "boundary", "spiral")
 
 
 class ToolPass(NamedTuple):
@@ -65,8 +65,8 @@ class ToolPass(NamedTuple):
     begin: int  #: its first pose
     end: int  #: one after its last pose
     closed: bool  #: whether it ends where it begins
-    kind: str  #: "seed", "level", "cut_locus" or "boundary": why the pass is there
-    distance: float  #: distance from the seed, world units; on cut loci and boundaries the mean
+    kind: str  #: "seed", "level", "cut_locus" or "boundary": why the pass is there; "spiral": several closed passes as one
+    distance: float  #: distance from the seed, world units; on cut loci, boundaries and spirals the mean
     length: float  #: world units
 
 
@@ -85,6 +85,21 @@ class ToolPath(NamedTuple):
     #: area, covered (share of the area within 0.6 spacings of a pass), largest_gap (in spacings), double_covered (share of
     #: the pass length), pass_length, link_length, surface_links, lifted_links, missing_links, uncovered_components
     measures: Dict[str, float]
+
+    @property
+    def poses(self) -> np.ndarray:
+        """(k, 4, 4) the poses as matrices, which take coordinates of the tool to those of the surface: the columns are the
+        direction of travel (x), y, the tool axis (z) and the position.
+
+        >>> import ahm
+        >>> path = ahm.tool_path(ahm.shapes.plane(9, 9), 2)
+        >>> path.poses.shape == (len(path.kind), 4, 4), bool((path.poses[:, :3, 2] == path.axis).all())
+        (True, True)
+        """
+        result = np.zeros((len(self.kind), 4, 4))
+        result[:, :3, 0], result[:, :3, 1] = self.travel, np.cross(self.axis, self.travel)
+        result[:, :3, 2], result[:, :3, 3], result[:, 3, 3] = self.axis, self.position, 1
+        return result
 
     def _poses(self) -> Tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, int]:
         kinds = np.argmax(self.kind[:, None] == _KINDS, axis=1).astype(np.uint8)
@@ -145,10 +160,16 @@ def _seed(seed: str, plane: Optional[Tuple[Vector, Vector]], curve: Optional[Mat
     return arguments.choice(seed, "seed", ("auto", "boundary")), np.empty((0, 3))
 
 
+def _require(name: str, given: bool, of: str, is_there: bool) -> None:
+    """Rejects an argument without the one that it belongs to."""
+    if given and not is_there:
+        raise ValueError(f"{name}: has no effect without {of}")
+
+
 def tool_path(surface: SurfaceLike, spacing: float, *, seed: str = "auto", plane: Optional[Tuple[Vector, Vector]] = None,
               curve: Optional[Matrix] = None, closed: bool = False, rows: Union[Array, Sequence[bool], None] = None,
-              facing: Optional[Vector] = None, max_angle: float = math.pi / 4, inside: Optional[Matrix] = None,
-              outside: Optional[Matrix] = None,
+              facing: Optional[Vector] = None, max_angle: Optional[float] = None, inside: Optional[Matrix] = None,
+              outside: Optional[Matrix] = None, spiral: bool = False,
               step: Optional[float] = None, chord_error: Optional[float] = None, tool_radius: Optional[float] = None,
               clearance: Optional[float] = None, max_link: Optional[float] = None, one_way: bool = False,
               lead: float = 0, tilt: float = 0, offset: Optional[float] = None,
@@ -162,9 +183,11 @@ def tool_path(surface: SurfaceLike, spacing: float, *, seed: str = "auto", plane
     plane : (point, normal): passes parallel to the section with this plane.
     curve : (n, 3) positions on the surface: passes parallel to the curve through them; `closed` joins its ends.
     rows : (n,) bool, cover only triangles whose corners are all True.
-    facing, max_angle : cover only triangles whose normal is within `max_angle` (radians) of the vector `facing`.
+    facing, max_angle : cover only triangles whose normal is within `max_angle` (radians; None: pi / 4) of the vector `facing`.
     inside, outside : (n, 3) positions on the surface. Cover only one side of the closed curve through them. The largest part
         into which it divides the surface is the outside, the others are the inside.
+    spiral : joins consecutive closed passes to spirals, which move by one spacing per turn. Passes that are open, or split,
+        remain separate.
     step : longest distance between poses; None: a quarter of the spacing.
     chord_error : largest distance of a pass from the chord between poses; None: a 200th of the spacing.
     tool_radius : the tool axis is the mean normal within this radius; None: half of the spacing.
@@ -194,20 +217,24 @@ def tool_path(surface: SurfaceLike, spacing: float, *, seed: str = "auto", plane
             raise ValueError(f"rows: expected an array of bool, one per row, got {arguments.describe(rows, given)}")
         mask = np.ascontiguousarray(given, dtype=np.uint8)
     toward = arguments.vector(facing, "facing")
-    within, without = (np.empty((0, 3)) if curve is None else arguments.floats(curve, name, (None, 3), finite=True)
-                       for name, curve in (("inside", inside), ("outside", outside)))
+    is_closed_curve = arguments.flag(closed, "closed")
+    _require("closed", is_closed_curve, "curve", curve is not None)
+    _require("max_angle", max_angle is not None, "facing", facing is not None)
+    angle = math.pi / 4 if max_angle is None else arguments.real(max_angle, "max_angle")
+    within, without = (np.empty((0, 3)) if side is None else arguments.floats(side, name, (None, 3), finite=True)
+                       for name, side in (("inside", inside), ("outside", outside)))
     lengths = {"chord_error": chord_error, "tool_radius": tool_radius, "clearance": clearance, "max_link": max_link,
                "offset": offset}
     options = checked(step=step, threads=threads)
-    options["one_way"] = arguments.flag(one_way, "one_way")
+    options["one_way"], options["spiral"] = arguments.flag(one_way, "one_way"), arguments.flag(spiral, "spiral")
     options["lead"], options["tilt"] = arguments.real(lead, "lead"), arguments.real(tilt, "tilt")
     for name, length in lengths.items():
         if length is not None:
             options[name] = arguments.real(length, name, positive=True)
     with reporting(progress) as report:
         position, contact, axis, travel, quaternion, number, motion, arclength, passes, measures = _core.tool_path(
-            on._body, apart, kind, points, arguments.flag(closed, "closed"), mask,
-            np.empty(0) if toward is None else toward, arguments.real(max_angle, "max_angle"), within, without, options, report)
+            on._body, apart, kind, points, is_closed_curve, mask,
+            np.empty(0) if toward is None else toward, angle, within, without, options, report)
     made = [ToolPass(begin, end, is_closed, _ORIGINS[origin], distance, length)
             for begin, end, is_closed, origin, distance, length in passes]
     return ToolPath(position, contact, axis, travel, quaternion, number, _KINDS[motion], arclength, made, measures)

@@ -63,6 +63,7 @@ py::tuple tool_path_of(const BodyPtr& body, double spacing, const std::string& s
   read(options, "tilt", o.tilt);
   read(options, "offset", o.offset);
   read(options, "one_way", o.one_way);
+  read(options, "spiral", o.spiral);
   read(options, "threads", o.threads);
   auto [path, measures] = compute(report, py::none(), [=](const Progress& progress) mutable {
     o.progress = progress;

@@ -248,11 +248,33 @@ def test_a_tool_path_covers_a_box_and_its_top():
     with pytest.raises(ValueError, match="point 0 of the seed curve is 1"):
         ahm.tool_path(box, 0.3, curve=[[0, 0, 3], [4, 0, 2]])
     ring = [[1, 1, 2], [3, 1, 2], [3, 2, 2], [1, 2, 2]]
+    for extra, message in (({"max_angle": 0.5}, "max_angle: has no effect without facing"), ({"closed": True}, "closed: has no effect")):
+        with pytest.raises(ValueError, match=message):
+            ahm.tool_path(box, 0.3, **extra)
     for side, area in (("inside", 2), ("outside", 50)):
         assert ahm.tool_path(box, 0.3, **{side: ring}).measures["area"] == pytest.approx(area, abs=0.01)
     for arguments, message in (((5.1e3,), "larger than the region"), ((-1,), "spacing"), ((1, "top"), "seed")):
         with pytest.raises(ValueError, match=message):
             ahm.tool_path(box, arguments[0], **({"seed": arguments[1]} if len(arguments) > 1 else {}))
+
+
+def test_poses_of_a_tool_path_are_rotations_by_the_quaternion():
+    path = ahm.tool_path(ahm.shapes.sphere(2), 0.4, lead=0.2)
+    w, x, y, z = path.quaternion.T
+    rotation = np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+                         [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+                         [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]])
+    np.testing.assert_allclose(path.poses[:, :3, :3], np.moveaxis(rotation, 2, 0), atol=1e-12)
+    np.testing.assert_array_equal(path.poses[:, :3, 3], path.position)
+    np.testing.assert_array_equal(path.poses[:, 3], np.tile([0, 0, 0, 1], (len(path.kind), 1)))
+
+
+def test_closed_passes_are_joined_to_a_spiral():
+    bowl = ahm.shapes.sphere(3)
+    keep = bowl[0][:, 2] < 0.3
+    path = ahm.tool_path(bowl, 0.1, rows=keep, seed="boundary", spiral=True)
+    assert [p.kind for p in path.passes].count("spiral") == 1
+    assert path.measures["covered"] > 0.99 and path.measures["double_covered"] < 0.03
 
 
 def test_tool_paths_are_programs_and_messages():

@@ -120,6 +120,18 @@ TEST_F(Coverage, CoversAWholePart) {
   }
 }
 
+TEST_F(Coverage, JoinsClosedPassesToASpiral) {
+  write("sphere.xyz", xyz(sphere(3000)));
+  const std::string command = "coverage sphere.xyz --whole --spacing 0.1 --pattern spiral -o path.csv";
+  const auto json = summary(command + " --seed-plane 0,0,0,0,0,1");
+  expect_values(json, {{"/spirals", 2}});
+  EXPECT_GT(number(json, "/covered"), 0.99);
+  EXPECT_LT(number(json, "/double_covered"), 0.03);
+  EXPECT_LE(json.at("passes").size(), 5U);
+  EXPECT_TRUE(
+      has(run_ok(command + " --facing 0,0,1 --max-angle 5 --seed-line 0,0,1 --direction 1,0,0").err, "no spiral"));
+}
+
 TEST_F(Coverage, OfAWholePartIsWrittenForMachinesAndRobots) {
   write("box.obj", obj({{0, 0, 0}, {4, 0, 0}, {4, 3, 0}, {0, 3, 0}, {0, 0, 2}, {4, 0, 2}, {4, 3, 2}, {0, 3, 2}},
                        {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}}));
@@ -137,6 +149,8 @@ TEST_F(Coverage, OfAWholePartIsWrittenForMachinesAndRobots) {
   for (const auto& run : json.at("runs")) {
     if (run.at("position").size() > 1) ++runs, points += run.at("position").size();
     EXPECT_EQ(run.at("quaternion").size(), run.at("position").size());
+    const auto matrix = run.at("matrix").at(0);
+    for (int r = 0; r < 3; ++r) EXPECT_EQ(matrix[r][3], run.at("position")[0][r]);
   }
   EXPECT_EQ(obj_lines("path.obj", "l").size(), runs);
   EXPECT_EQ(obj_lines("path.obj", "v").size(), points);
@@ -144,6 +158,11 @@ TEST_F(Coverage, OfAWholePartIsWrittenForMachinesAndRobots) {
                  {{"-o path.ngc", 1, {"G-code needs a feed rate; use --feed"}},
                   {"-o path.ngc --feed 800", 1, {"faces sideways or down", "use 5 axes"}},
                   {"-o path.txt", 1, {"must end in", ".ngc or .yaml"}},
+                  {"-o path.csv --axes 5", 1, {"--axes has no effect"}},
+                  {"-o path.ngc --feed 800 --frame part", 1, {"--frame has no effect"}},
+                  {"-o path.yaml --feed 800", 1, {"--feed has no effect", "PoseArray"}},
+                  {"-o path.csv --format ngc", 1, {"use --feed"}},
+                  {"-o path.yaml --frame 'a\nb'", 1, {"line break"}},
                   {"-o path.csv --lead 90", 2, {"not between -90 and 90 degrees"}},
                   {"-o path.csv --lead 10 --lag 10", 2, {"--lag"}}});
 }
@@ -158,7 +177,10 @@ TEST_F(Coverage, RefusesPartsItCannotCover) {
                   {"--whole --spacing 0.2 --seed-curve '0,0,1 0,0,3'", 1, {"point 1 of the seed curve"}},
                   {"--whole --spacing 0.2 --inside '1,0,0 0,1,0 0,0,3'", 1, {"point 2 of the region curve"}},
                   {"--whole --spacing 0.2 --inside '1,0,0 0,1,0'", 1, {"2 points", "at least three"}},
-                  {"--whole --spacing 0.2 --pattern spiral", 2, {"--pattern", "--whole"}},
+                  {"--whole --spacing 0.2 --angle 30", 2, {"--angle", "--whole"}},
+                  {"--whole --spacing 0.2 --seed-line 0,0,3 --direction 1,0,0", 1, {"2 from the surface"}},
+                  {"--whole --spacing 0.2 --seed-line 0,0,1 --direction 0,0,1", 1, {"perpendicular to the surface"}},
+                  {"--whole --spacing 0.2 --source 0,0,3 --radius 1", 1, {"2 from the surface"}},
                   {"--whole --spacing 0.2 --mask m", 1, {"--mask m"}},
                   {"--whole --spacing 0.2 --facing 0,0,1 --max-angle 0.001", 1, {"no triangle lies in the region"}},
                   {"--spacing 0.2 --clearance 1", 2, {"--clearance requires --whole"}},

@@ -1,8 +1,10 @@
 // Tool paths over whole parts: the bars of coverage on generated parts, poses, links, regions and errors.
 #include "ahm/applications/tool_path.hpp"
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <numbers>
 #include <set>
@@ -38,9 +40,9 @@ bool crosses(const Vec3& from, const Vec3& to, const Vec3& a, const Vec3& b, con
 }
 
 /// Expects the laws of every path: coverage, poses on the surface, rotations, continuous axes, links outside of the part.
-void expect_path(const Mesh& mesh, double spacing, const ToolPathSeed& seed = AutomaticSeed{}) {
+void expect_path(const Mesh& mesh, double spacing, const ToolPathSeed& seed = AutomaticSeed{}, bool spiral = false) {
   const auto surface = surface_of(mesh);
-  const ToolPath path = tool_path(surface, {.spacing = spacing, .seed = seed});
+  const ToolPath path = tool_path(surface, {.spacing = spacing, .seed = seed, .spiral = spiral});
   const ToolPathMeasures measures = tool_path_measures(surface, path);
   EXPECT_GE(measures.covered, 0.99);
   EXPECT_LE(measures.largest_gap, 1.25);
@@ -61,6 +63,15 @@ void expect_path(const Mesh& mesh, double spacing, const ToolPathSeed& seed = Au
         x_axis{1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)};
     EXPECT_LT(norm(z_axis - p.axis), 1e-9);
     EXPECT_LT(norm(x_axis - p.travel), 1e-9);
+    const auto matrix = pose_matrix(p);
+    const Vec3 y_axis{2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)};
+    for (std::size_t r = 0; r < 3; ++r) {
+      EXPECT_EQ(matrix[r][0], p.travel[r]);
+      EXPECT_NEAR(matrix[r][1], y_axis[r], 1e-9);
+      EXPECT_EQ(matrix[r][2], p.axis[r]);
+      EXPECT_EQ(matrix[r][3], p.position[r]);
+    }
+    EXPECT_EQ(matrix[3], (std::array<double, 4>{0, 0, 0, 1}));
     if (p.kind == ToolMotion::pass) EXPECT_LT(surface.closest_point(p.position).distance, 1e-9);
     if (k == 0) continue;
     const ToolPose& before = path.poses[k - 1];
@@ -118,6 +129,121 @@ TEST(ToolPath, PassesOnACylinderAreEquallySpaced) {
   EXPECT_EQ(levels.size(), 1 + static_cast<std::size_t>(48 * chord / 4 / spacing));
 }
 
+/// A surface of revolution around the z axis. @param profile  radius and height of the rings from the edge to the apex, which
+/// has radius 0
+Mesh revolved(const std::vector<Vec2>& profile) {
+  constexpr Index n = 64;
+  Mesh mesh;
+  const auto rings = static_cast<Index>(profile.size()) - 1;
+  for (Index k = 0; k < rings; ++k)
+    for (Index i = 0; i < n; ++i) {
+      const double angle = 2 * std::numbers::pi * i / n;
+      mesh.positions.push_back({profile[k][0] * std::cos(angle), profile[k][0] * std::sin(angle), profile[k][1]});
+    }
+  mesh.positions.push_back({0, 0, profile.back()[1]});
+  for (Index k = 0; k < rings; ++k)
+    for (Index i = 0; i < n; ++i) {
+      const Index a = n * k + i, b = n * k + (i + 1) % n;
+      if (k + 1 == rings) {
+        mesh.faces.push_back({a, b, n * rings});
+        continue;
+      }
+      mesh.faces.push_back({a, b, b + n});
+      mesh.faces.push_back({a, b + n, a + n});
+    }
+  return mesh;
+}
+
+/// Expects one pass from the edge around the z axis, whose turns are equally spaced, except for the first and the last one.
+/// @param distance_of  distance of a point from the edge
+void expect_spiral(const Mesh& mesh, double spacing, const std::function<double(const Vec3&)>& distance_of) {
+  const auto surface = surface_of(mesh);
+  const ToolPath path = tool_path(surface, {.spacing = spacing, .seed = BoundarySeed{}, .spiral = true}),
+                 rings = tool_path(surface, {.spacing = spacing, .seed = BoundarySeed{}});
+  ASSERT_EQ(path.passes.size(), 1U);
+  EXPECT_EQ(path.passes[0].origin, PassOrigin::spiral);
+  EXPECT_GT(rings.passes.size(), 8U);
+  EXPECT_EQ(path.surface_links + path.lifted_links, 0);
+  const ToolPathMeasures measures = tool_path_measures(surface, path), of_rings = tool_path_measures(surface, rings);
+  EXPECT_GE(measures.covered, std::min(0.99, of_rings.covered));
+  EXPECT_LE(measures.largest_gap, std::max(0.75, of_rings.largest_gap));
+  EXPECT_LE(measures.double_covered, 0.01);
+  std::vector<Vec3> at;
+  std::vector<double> turned, away;  // along the path: angle around the axis, distance from the edge in spacings
+  for (const ToolPose& pose : path.poses) {
+    if (pose.kind != ToolMotion::pass) continue;
+    const double angle = std::atan2(pose.position[1], pose.position[0]),
+                 before = turned.empty() ? angle : turned.back();
+    turned.push_back(before + std::remainder(angle - before, 2 * std::numbers::pi));
+    away.push_back(distance_of(pose.position) / spacing);
+    at.push_back(pose.position);
+  }
+  if (away.front() > away.back()) {
+    std::reverse(at.begin(), at.end());
+    std::reverse(turned.begin(), turned.end());
+    std::reverse(away.begin(), away.end());
+  }
+  const double direction = turned.back() > turned.front() ? 1 : -1;
+  std::size_t turn = 0, compared = 0;
+  double sum = 0;
+  for (std::size_t k = 0; k < turned.size(); ++k) {
+    if (k > 0)  // around a vertex, the path may move back a little
+      EXPECT_GT(direction * (turned[k] - turned[k - 1]) * std::hypot(at[k][0], at[k][1]), -0.01 * spacing);
+    while (turn < k && direction * (turned[k] - turned[turn + 1]) >= 2 * std::numbers::pi) ++turn;
+    if (direction * (turned[k] - turned[turn]) < 2 * std::numbers::pi) continue;
+    const double t = (direction * (turned[k] - turned[turn]) - 2 * std::numbers::pi) /
+                     (direction * (turned[turn + 1] - turned[turn]));
+    const double apart = away[k] - ((1 - t) * away[turn] + t * away[turn + 1]);
+    EXPECT_GT(apart, 0.49);
+    if (away[turn] < away.front() + 0.51 || away[k] > away.back() - 0.51) continue;
+    // The path may rise by one face in one step.
+    const double turn_length = 2 * std::numbers::pi * std::hypot(at[k][0], at[k][1]) / spacing;
+    EXPECT_NEAR(apart, 1, 0.03 + 0.4 / turn_length);
+    sum += apart;
+    ++compared;
+  }
+  ASSERT_GT(compared, 100U);
+  EXPECT_NEAR(sum / static_cast<double>(compared), 1, 0.01);
+}
+
+TEST(ToolPath, IsASpiralOnACylinder) {
+  const Mesh mesh = cylinder(3, false);
+  const ToolPath path = tool_path(surface_of(mesh), {.spacing = 0.25, .seed = BoundarySeed{}});
+  const bool is_upward = path.passes[0].distance > path.passes.back().distance
+                             ? path.poses[path.passes[0].begin].position[2] > 1.5
+                             : path.poses[path.passes[0].begin].position[2] < 1.5;
+  expect_spiral(mesh, 0.25, [&](const Vec3& p) { return is_upward ? p[2] : 3 - p[2]; });
+}
+
+TEST(ToolPath, IsASpiralOnACone) {
+  std::vector<Vec2> profile;
+  for (int k = 0; k <= 16; ++k) profile.push_back({1.5 * (1 - k / 16.0), 2.0 * k / 16});
+  const double side = std::hypot(std::cos(std::numbers::pi / 64) * 1.5, 2);  // of the edge from the apex, in a face
+  expect_spiral(revolved(profile), 0.2, [&](const Vec3& p) { return (1 - (2 - p[2]) / 2) * side; });
+}
+
+TEST(ToolPath, IsASpiralOnASphericalCap) {
+  std::vector<Vec2> profile;
+  for (int k = 0; k <= 24; ++k) {
+    const double angle = 2 * (1 - k / 24.0);
+    profile.push_back({std::sin(angle), std::cos(angle)});
+  }
+  for (const double spacing : {0.15, 2 / 12.87})  // with the second one, the pole is just below the end of the spiral
+    expect_spiral(revolved(profile), spacing,
+                  [](const Vec3& p) { return 2 - std::acos(std::clamp(p[2] / norm(p), -1.0, 1.0)); });
+}
+
+TEST(ToolPath, SpiralsCoverAsSeparatePassesDo) {
+  expect_path(icosphere(8), 0.1, AutomaticSeed{}, true);
+  expect_path(torus(1000), 0.1, PlaneSeed{{0, 0, 0}, {0, 1, 0}}, true);
+  expect_path(holed_plate(), 0.15, BoundarySeed{}, true);
+  expect_path(cylinder(3, true), 0.15, PlaneSeed{{0, 0, 1.5}, {0, 0, 1}}, true);
+  // Around the holes of the plate, the passes are open: they remain as they are.
+  const auto plate = surface_of(holed_plate());
+  const ToolPath path = tool_path(plate, {.spacing = 0.25, .spiral = true});
+  for (const ToolPass& pass : path.passes) EXPECT_NE(pass.origin, PassOrigin::spiral);
+}
+
 TEST(ToolPath, OneWayPassesRunInOneDirection) {
   const auto surface = surface_of(flat_square(21));
   const ToolPath path = tool_path(surface, {.spacing = 0.1, .one_way = true});
@@ -142,6 +268,19 @@ TEST(ToolPath, IsParallelToADrawnCurveAndToALine) {
     }
     EXPECT_EQ(seeds, 1U);
     EXPECT_GE(tool_path_measures(surface, path).covered, 0.99);
+  }
+}
+
+TEST(ToolPath, ALineEndsWhereItReturns) {
+  // Around a cylinder, a line meets its own beginning, or runs along it.
+  const auto surface = surface_of(cylinder(3, true));
+  const SurfacePoint start = surface.closest_point({1, 0, 1.5}).point;
+  for (const Vec3& direction : {Vec3{0, 1, 0}, Vec3{0, 1, 0.01}}) {
+    const ToolPath path = tool_path(surface, {.spacing = 0.25, .seed = LineSeed{start, direction}});
+    const ToolPathMeasures measures = tool_path_measures(surface, path);
+    EXPECT_GE(measures.covered, 0.99);
+    EXPECT_LE(measures.largest_gap, 1.25);
+    EXPECT_LE(measures.double_covered, 0.005);
   }
 }
 
@@ -380,6 +519,8 @@ TEST(ToolPath, RejectsWhatCannotBeCovered) {
   refuses({.spacing = 0.2, .seed = PlaneSeed{{0, 0, 5}, {0, 0, 1}}}, "does not cross the region");
   refuses({.spacing = 0.2, .seed = BoundarySeed{}}, "no boundary");
   refuses({.spacing = 0.2, .seed = LineSeed{Row{3}, {0, 0, 0}}}, "the seed line has no length");
+  for (const Vec3& across : {surface.positions()[3], (-1) * surface.positions()[3]})
+    refuses({.spacing = 0.2, .seed = LineSeed{Row{3}, across}}, "perpendicular to the surface");
   refuses({.spacing = 0.2, .seed = CurveSeed{{{0, 0, 1}, {0, 0, 3}}, false}}, "point 1 of the seed curve");
   refuses({.spacing = 0.2, .region = {.rows = std::vector<bool>(162, false)}}, "no triangle lies in the region");
   refuses({.spacing = 0.2, .region = {.rows = std::vector<bool>(3, true)}}, "3 rows");

@@ -25,9 +25,11 @@ std::string input_help() {
 }
 
 /// Parses the name of a format into its extension.
-ChoiceOf<std::string> format_parser(io::Use use) {
+ChoiceOf<std::string> format_parser(io::Use use, const std::vector<std::string>& more = {}) {
   std::vector<std::pair<std::string, std::string>> names;
-  for (const std::string& extension : io::extensions(use)) names.emplace_back(extension.substr(1), extension);
+  std::vector<std::string> extensions = io::extensions(use);
+  extensions.insert(extensions.end(), more.begin(), more.end());
+  for (const std::string& extension : extensions) names.emplace_back(extension.substr(1), extension);
   return choice_of(names);
 }
 
@@ -301,9 +303,11 @@ CLI::Option* add_output(CLI::App& app, OutputOptions& o) {
       "Output file, see below");
 }
 
-CLI::Option* add_table_output(CLI::App& app, OutputOptions& o) {
-  add_parsed(app, "--format", o.format, format_parser(io::Use::write), "NAME",
-             "Format of OUTPUT: csv, jsonl, ply, ... (default: from the file name; for -, csv)");
+CLI::Option* add_table_output(CLI::App& app, OutputOptions& o, const std::vector<std::string>& more) {
+  std::string names = "csv, jsonl, ply";
+  for (const std::string& extension : more) names += ", " + extension.substr(1);
+  add_parsed(app, "--format", o.format, format_parser(io::Use::write, more), "NAME",
+             fmt::format("Format of OUTPUT: {}, ... (default: from the file name; for -, csv)", names));
   return add_output(app, o)->description("Output file, see below; - for standard output");
 }
 

@@ -109,7 +109,8 @@ void add_graph_options(CLI::App& app, InputOptions& input, SolveOptions& solve);
 /// Adds --output and --no-overwrite.
 CLI::Option* add_output(CLI::App& app, OutputOptions& o);
 /// Adds --output, --no-overwrite and --format for tables (`io::write`).
-CLI::Option* add_table_output(CLI::App& app, OutputOptions& o);
+/// @param more  extensions of other files that the subcommand writes
+CLI::Option* add_table_output(CLI::App& app, OutputOptions& o, const std::vector<std::string>& more = {});
 CLI::Option* add_json(CLI::App& app, OutputOptions& o);
 CLI::Option* add_view(CLI::App& app, OutputOptions& o);
 /// Adds --verbose and --quiet.

@@ -29,6 +29,7 @@ struct InputOptions {
   bool drop_nan = false;
   bool around_source = false;   ///< build the graph only around the source
   std::optional<double> local;  ///< radius of the map, with `around_source`
+  bool all_components = false;  ///< no map from one source is made: no warning of other components
   std::optional<Index> k;
   std::string knn = "nanoflann";  ///< nanoflann, flann, pcl
   std::string normals = "auto";   ///< auto, oriented, unoriented, estimate

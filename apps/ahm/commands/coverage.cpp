@@ -52,7 +52,7 @@ constexpr const char* coverage_footer =
     "(the\n"
     "point of the surface), with --feed time (seconds, also for lifted motions). OUTPUT can also be:\n"
     "  .obj   a line per pass and per link, in the groups pass, link, approach and retreat\n"
-    "  .json  an object per pass and per link, with the poses\n"
+    "  .json  an object per pass and per link, with the poses, also as 4 x 4 matrices\n"
     "  .ngc   G-code, RS-274/NGC as LinuxCNC reads it: lifted motions are G0, all others G1. With --axes 5 the tool "
     "axis is\n"
     "         (sin A sin C, sin A cos C, cos A), and X Y Z is the tool center point, as in LinuxCNC's xyzac-trt\n"
@@ -62,6 +62,7 @@ constexpr const char* coverage_footer =
     "  ahm coverage scan.ply --source 0.1,0.2,1.4 --radius 0.2 --spacing 0.01 -o path.csv\n"
     "  ahm coverage part.stl --source 17 --radius 30 --spacing 2 --pattern spiral -o path.ply\n"
     "  ahm coverage part.obj --whole --spacing 2 -o path.csv\n"
+    "  ahm coverage dome.obj --whole --spacing 2 --seed-boundary --pattern spiral -o path.csv\n"
     "  ahm coverage part.obj --whole --spacing 2 --facing 0,0,1 --max-angle 60 -o path.vtp --json path.json\n"
     "  ahm coverage part.obj --whole --spacing 2 --axes 5 --lead 10 --feed 800 -o path.ngc";
 
@@ -178,6 +179,7 @@ void run(const CoverageCommandOptions& options) {
     WholeOptions whole = options.whole;
     whole.path.spacing = options.path.spacing;
     whole.path.step = options.path.step;
+    whole.path.spiral = options.path.pattern == CoveragePattern::spiral;
     return run_whole(options.input, options.output, whole,
                      options.has_source ? std::optional(options.source.spec) : std::nullopt, options.path.radius);
   }
@@ -233,10 +235,10 @@ void offer(CLI::App& app, CoverageCommandOptions& o) {
       add_parsed(app, "--radius", o.path.radius, parse_positive, "R", "Radius of the covered disc, along the surface");
   add_parsed(app, "--spacing", o.path.spacing, parse_positive, "S", "Distance between neighboring lines or turns")
       ->required();
-  add_table_output(app, o.output)->required();
+  add_table_output(app, o.output, {".obj", ".json", ".ngc", ".yaml"})->required();
   add_parsed(app, "--pattern", o.path.pattern,
              choice_of<CoveragePattern>({{"raster", CoveragePattern::raster}, {"spiral", CoveragePattern::spiral}}),
-             "NAME", "raster (default) or spiral");
+             "NAME", "raster (default) or spiral. With --whole, spiral joins closed passes");
   add_parsed(app, "--angle", o.path.angle, parse_degrees, "DEG",
              "Angle from the u axis to the lines, in degrees (default 0)");
   add_parsed(app, "--step", o.path.step, parse_positive, "L", "Distance between points of the path (default: S / 2)");
@@ -249,7 +251,7 @@ void offer(CLI::App& app, CoverageCommandOptions& o) {
   offer_whole(app, o.whole);
   app.callback([=, &app, &o] {
     o.has_source = source->count() > 0;
-    for (const char* name : {"--pattern", "--angle", "--u-axis", "--min-quality", "--method", "--variant", "--t-coef"})
+    for (const char* name : {"--angle", "--u-axis", "--min-quality", "--method", "--variant", "--t-coef"})
       if (o.whole.whole && app.get_option(name)->count() > 0) throw CLI::ExcludesError(name, "--whole");
     if (!o.whole.whole && source->count() == 0) throw CLI::RequiredError("--source");
     if ((!o.whole.whole || o.has_source) && radius->count() == 0) throw CLI::RequiredError("--radius");

@@ -38,6 +38,8 @@ const char* word(PassOrigin origin) {
       return "cut_locus";
     case PassOrigin::boundary:
       return "boundary";
+    case PassOrigin::spiral:
+      return "spiral";
   }
   return "";
 }
@@ -59,10 +61,24 @@ std::vector<Vec3> curve_of(const Input& input, const std::vector<SourceSpec>& sp
   return points;
 }
 
+/// A point of the surface at most half a spacing from a position. @param fault  of the error, a literal
+SurfacePoint point_near(const Input& input, const SourceSpec& spec, const std::string& option, double spacing,
+                        std::string_view fault) {
+  if (const auto* position = std::get_if<SourcePosition>(&spec))
+    if (const double away = input.surface().closest_point(position->position).distance; away > spacing / 2)
+      throw InvalidArgument(fault,
+                            fmt::format("{} {}: the point is {:.4g} from the surface, more than half of the spacing",
+                                        option, to_string(spec), away),
+                            "use a point on the surface");
+  return point_on_surface(input, spec, option);
+}
+
 ToolPathSeed seed_of(const WholeOptions& options, const Input& input) {
   if (options.from_boundary) return BoundarySeed{};
   if (const auto& p = options.plane; !p.empty()) return PlaneSeed{{p[0], p[1], p[2]}, {p[3], p[4], p[5]}};
-  if (options.line) return LineSeed{point_on_surface(input, *options.line, "--seed-line"), *options.direction};
+  if (options.line)
+    return LineSeed{point_near(input, *options.line, "--seed-line", options.path.spacing, "seed_off_surface"),
+                    *options.direction};
   if (options.curve.empty()) return AutomaticSeed{};
   return CurveSeed{curve_of(input, options.curve, "--seed-curve"), options.closed};
 }
@@ -88,8 +104,10 @@ void write_view(const InputOptions& input_options, const OutputOptions& output, 
 
 void report(const std::string& input_path, const OutputOptions& output, const Input& input, const ToolPath& path,
             const ToolPathMeasures& measures, Journal& journal) {
+  const auto spirals = std::ranges::count(path.passes, PassOrigin::spiral, &ToolPass::origin);
   nlohmann::ordered_json j = summary("ahm coverage", input_path, output, input);
   j["pattern"] = "whole";
+  j["spirals"] = spirals;
   j["spacing"] = path.spacing;
   j["points"] = path.poses.size();
   j["pass_length"] = path.pass_length;
@@ -111,12 +129,16 @@ void report(const std::string& input_path, const OutputOptions& output, const In
   }
   deliver(
       std::move(j),
-      fmt::format("{} of length {:.4g}, {} poses; links: {} on the surface, {} lifted, length {:.4g}\n"
+      fmt::format("{}{} of length {:.4g}, {} poses; links: {} on the surface, {} lifted{}, length {:.4g}\n"
                   "covered: {:.2f} % of the area within 0.6 spacings; largest gap {:.2f} spacings; double: {:.2f} % of "
                   "the passes\n",
-                  path.passes.size() == 1 ? "1 pass" : fmt::format("{} passes", path.passes.size()), path.pass_length,
-                  path.poses.size(), path.surface_links, path.lifted_links, path.link_length, 100 * measures.covered,
-                  measures.largest_gap, 100 * measures.double_covered),
+                  path.passes.size() == 1 ? "1 pass" : fmt::format("{} passes", path.passes.size()),
+                  spirals == 0   ? ""
+                  : spirals == 1 ? " (1 spiral)"
+                                 : fmt::format(" ({} spirals)", spirals),
+                  path.pass_length, path.poses.size(), path.surface_links, path.lifted_links,
+                  path.missing_links == 0 ? "" : fmt::format(", {} missing", path.missing_links), path.link_length,
+                  100 * measures.covered, measures.largest_gap, 100 * measures.double_covered),
       output, journal);
 }
 
@@ -195,12 +217,14 @@ void run_whole(const InputOptions& input_options, const OutputOptions& output, c
   for (const auto* curve : {&options.inside, &options.outside}) named.insert(named.end(), curve->begin(), curve->end());
   for (const auto& spec : {source, options.line})
     if (spec) named.push_back(*spec);
-  const Input input = open_input(with_named_points(input_options, named), journal);
+  InputOptions opened = with_named_points(input_options, named);
+  opened.all_components = true;
+  const Input input = open_input(opened, journal);
   ToolPathOptions o = options.path;
   o.seed = seed_of(options, input);
   o.progress = journal.progress();
   o.threads = input_options.threads;
-  if (source) o.region.disc = {point_on_surface(input, *source, "--source"), radius};
+  if (source) o.region.disc = {point_near(input, *source, "--source", o.spacing, "region_off_surface"), radius};
   if (!options.mask.empty()) o.region.rows = mask_of(input.geometry, options.mask);
   if (options.facing) o.region.facing = {*options.facing, options.max_angle};
   if (!options.inside.empty()) o.region.enclosures.push_back({curve_of(input, options.inside, "--inside")});
@@ -217,6 +241,8 @@ void run_whole(const InputOptions& input_options, const OutputOptions& output, c
   if (path.missing_links > 0)
     journal.add_warning(
         fmt::format("links without a free path at the clearance: {}; raise or lower --clearance", path.missing_links));
+  if (o.spiral && std::ranges::count(path.passes, PassOrigin::spiral, &ToolPass::origin) == 0)
+    journal.add_warning("no spiral: nowhere are three or more closed passes around each other; try another seed");
   if (measures.covered < 0.99 || measures.largest_gap > 1.25)
     journal.add_warning(
         fmt::format("gaps: {:.2f} % of the area is farther than 0.6 spacings from a pass, the farthest point {:.2f} "

@@ -172,6 +172,8 @@ Input open_input(io::Geometry geometry, const InputOptions& options, Journal& jo
   if (options.local && place && geometry.face_count() > 0 && backend.uses_faces)
     return open_surroundings(std::move(geometry), backend, std::move(mesh), given_faces, options, *place, journal);
   BuiltSurface built = build(backend, geometry, mesh, options, place, journal);
+  if (options.all_components)
+    std::erase_if(built.warnings, [](const Warning& w) { return w.id == "components" || w.id == "cloud_components"; });
   journal.add_warnings(built.warnings);
   return {std::move(geometry), &backend, std::move(built), std::move(mesh), std::nullopt, given_faces, options.voxel};
 }

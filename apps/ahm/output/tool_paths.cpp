@@ -76,6 +76,7 @@ void write_json(const std::string& file, const PathFileOptions& options, const T
       j["axis"].push_back(pose.axis);
       j["travel"].push_back(pose.travel);
       j["quaternion"].push_back(pose.quaternion);
+      j["matrix"].push_back(pose_matrix(pose));
       j["arclength"].push_back(pose.arclength);
       if (options.feed > 0) j["time"].push_back(60 * pose.arclength / options.feed);
     }

@@ -14,6 +14,7 @@ struct PathFileOptions {
   double feed = 0;  ///< 0: none
   GcodeOptions gcode = {};
   RosOptions ros = {};
+  std::vector<std::string> named = {};  ///< those in the command line: "--feed"
 };
 
 /// Extensions of the files.

@@ -157,6 +157,14 @@ FaceMesh face_mesh(const Surface& surface) {
   }
 }
 
+exact::MeshPoint on_side(Half side, double share) {
+  const auto s = static_cast<std::size_t>(side % 3);
+  exact::MeshPoint point{side / 3, {0, 0, 0}};
+  point.barycentric[s] = 1 - share;
+  point.barycentric[(s + 1) % 3] = share;
+  return point;
+}
+
 exact::MeshPoint in_face(const FaceMesh& mesh, const exact::MeshPoint& point, Index face) {
   if (point.face == face) return point;
   exact::MeshPoint result{face, {0, 0, 0}};
@@ -209,14 +217,9 @@ class LevelTracer {
 
   /// The point of a side with the level, the same from both faces.
   exact::MeshPoint crossing(Half h) const {
-    const auto s = static_cast<std::size_t>(h % 3);
     const Index a = mesh_.tail(h), b = mesh_.head(h);
     const double fa = values_[static_cast<std::size_t>(a)], fb = values_[static_cast<std::size_t>(b)];
-    const double t = a < b ? (level_ - fa) / (fb - fa) : 1 - (level_ - fb) / (fa - fb);
-    exact::MeshPoint point{h / 3, {0, 0, 0}};
-    point.barycentric[s] = 1 - t;
-    point.barycentric[(s + 1) % 3] = t;
-    return point;
+    return on_side(h, a < b ? (level_ - fa) / (fb - fa) : 1 - (level_ - fb) / (fa - fb));
   }
 
   /// Follows the curve from a face in both directions. @return whether it is closed

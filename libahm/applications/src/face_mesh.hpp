@@ -49,6 +49,9 @@ struct MeshCurve {
 /// @param values  one per point
 std::vector<MeshCurve> level_curves(const FaceMesh& mesh, std::span<const double> values, double level);
 
+/// The point of a side at a share of it, from its tail.
+exact::MeshPoint on_side(detail::Half side, double share);
+
 /// A point of a face in the barycentric coordinates of another face that contains it. @param face  the other face
 exact::MeshPoint in_face(const FaceMesh& mesh, const exact::MeshPoint& point, Index face);
 

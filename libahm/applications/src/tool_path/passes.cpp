@@ -28,19 +28,12 @@ constexpr double max_gap = 0.6, min_gap = 0.25;
 /// Largest slope of the distance along a cut locus that is treated as a strip. At a steeper one, the passes of both sides
 /// meet at an angle that covers the corner: no point is farther than 1 / (1 + slope).
 constexpr double max_slope = 0.45;
-/// Passes may not be closer to cut loci than this, and pieces shorter than `shortest` are left out.
-constexpr double least_distance = 0.5, shortest = 0.5;
+/// Passes may not be closer to cut loci than this.
+constexpr double least_distance = 0.5;
 
 MeshPoint between(const MeshPoint& a, const MeshPoint& b, double t) {
   MeshPoint p{a.face, {}};
   for (std::size_t c = 0; c < 3; ++c) p.barycentric[c] = (1 - t) * a.barycentric[c] + t * b.barycentric[c];
-  return p;
-}
-
-MeshPoint on_side(Half h, double t) {
-  MeshPoint p{h / 3, {0, 0, 0}};
-  p.barycentric[to_size(h % 3)] = 1 - t;
-  p.barycentric[to_size((h % 3 + 1) % 3)] = t;
   return p;
 }
 
@@ -288,8 +281,8 @@ std::vector<PassCurve> boundary_passes(const PathDomain& domain, const Front& fr
   return result;
 }
 
-void remove_short(const FaceMesh& mesh, double length, std::vector<PassCurve>& passes) {
-  std::erase_if(passes, [&](const PassCurve& pass) { return curve_length(mesh, pass.curve) < length; });
+void remove_short(const FaceMesh& mesh, std::vector<PassCurve>& passes) {
+  std::erase_if(passes, [&](const PassCurve& pass) { return curve_length(mesh, pass.curve) < shortest_pass; });
 }
 
 /// Appends sources that represent a curve in an exact map: the middles of pieces of at most `step`. They lie inside faces,
@@ -432,7 +425,7 @@ MeshCurve joined_curve(const PathDomain& domain, std::span<const MeshPoint> poin
 }
 
 std::vector<PassCurve> make_passes(const PathDomain& domain, const std::vector<MeshCurve>& seeds, double phase,
-                                   const Progress& progress) {
+                                   bool spiral, const Progress& progress) {
   std::vector<MeshPoint> sources;
   std::vector<PassCurve> levels;
   for (const MeshCurve& seed : seeds) {
@@ -446,19 +439,24 @@ std::vector<PassCurve> make_passes(const PathDomain& domain, const std::vector<M
     if (std::isinf(d)) d = nan;  // a component without a seed
     if (!std::isnan(d)) farthest = std::max(farthest, d);
   }
-  for (double level = phase > 0 ? phase : 1; level < farthest; level += 1)
-    for (MeshCurve& curve : level_curves(domain.mesh, values, level))
-      levels.push_back({std::move(curve), PassOrigin::level, level});
-  remove_short(domain.mesh, shortest, levels);
+  const double first = phase > 0 ? phase : 1;
+  if (spiral) {
+    for (PassCurve& pass : spiral_levels(domain.mesh, values, first, farthest)) levels.push_back(std::move(pass));
+  } else {
+    for (double level = first; level < farthest; level += 1)
+      for (MeshCurve& curve : level_curves(domain.mesh, values, level))
+        levels.push_back({std::move(curve), PassOrigin::level, level});
+  }
+  remove_short(domain.mesh, levels);
 
   std::vector<PassCurve> middles = CutLocus(domain, from_seed).curves([&](const Meeting& m) {
     return m.slope < max_slope && needs_middle(m.distance, phase);
   });
   for (PassCurve& pass : boundary_passes(domain, from_seed, phase, needs_middle)) middles.push_back(std::move(pass));
-  remove_short(domain.mesh, shortest, middles);
+  remove_short(domain.mesh, middles);
   std::vector<PassCurve> passes = trimmed(domain, std::move(levels), middles, progress);
   passes.insert(passes.end(), std::make_move_iterator(middles.begin()), std::make_move_iterator(middles.end()));
-  remove_short(domain.mesh, shortest, passes);
+  remove_short(domain.mesh, passes);
   if (passes.empty()) return passes;
 
   // Gaps that remain: where the distance from all passes is larger than the largest gap.
@@ -469,7 +467,7 @@ std::vector<PassCurve> make_passes(const PathDomain& domain, const std::vector<M
   for (PassCurve& pass :
        boundary_passes(domain, from_passes, 0, [](double distance, double) { return distance > max_gap; }))
     rest.push_back(std::move(pass));
-  remove_short(domain.mesh, shortest, rest);
+  remove_short(domain.mesh, rest);
   passes.insert(passes.end(), std::make_move_iterator(rest.begin()), std::make_move_iterator(rest.end()));
   return passes;
 }

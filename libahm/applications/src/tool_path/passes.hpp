@@ -14,7 +14,7 @@ namespace ahm {
 struct PassCurve {
   MeshCurve curve;
   PassOrigin origin = PassOrigin::level;
-  double distance = 0;  ///< from the seed; on cut loci and boundaries the mean
+  double distance = 0;  ///< from the seed; on cut loci, boundaries and spirals the mean
 };
 
 /// The mesh to cover, and its exact geodesics.
@@ -29,6 +29,8 @@ struct PathDomain {
 
 /// Longest side of the fine mesh.
 inline constexpr double longest_side = 0.4;
+/// Shorter passes are left out.
+inline constexpr double shortest_pass = 0.5;
 /// Pieces of curves that one source of an exact map represents. At distance d from a straight curve the error is at most
 /// step^2 / (8 d): for seeds 0.002 at the first level, for passes 0.013 at the largest gap.
 inline constexpr double seed_step = 0.125, pass_step = 0.25;
@@ -41,9 +43,16 @@ double curve_length(const FaceMesh& mesh, const MeshCurve& curve);
 /// @throws InvalidArgument (points in different components)
 MeshCurve joined_curve(const PathDomain& domain, std::span<const exact::MeshPoint> points, bool closed);
 
+/// The level curves at the distances first, first + 1, ... Closed ones that follow each other are joined to spirals.
+/// @param distances  one per point; NaN: not reached
+/// @param farthest   largest distance
+std::vector<PassCurve> spiral_levels(const FaceMesh& mesh, std::span<const double> distances, double first,
+                                     double farthest);
+
 /// All passes around seed curves.
-/// @param phase  distance of the first pass from the seed: 0 or 0.5
+/// @param phase   distance of the first pass from the seed: 0 or 0.5
+/// @param spiral  joins passes to spirals
 std::vector<PassCurve> make_passes(const PathDomain& domain, const std::vector<MeshCurve>& seeds, double phase,
-                                   const Progress& progress);
+                                   bool spiral, const Progress& progress);
 
 }  // namespace ahm

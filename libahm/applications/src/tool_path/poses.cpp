@@ -422,6 +422,11 @@ class PoseWriter {
 
 }  // namespace
 
+std::array<std::array<double, 4>, 4> pose_matrix(const ToolPose& pose) {
+  const Vec3 &x = pose.travel, &z = pose.axis, &p = pose.position, y = cross(z, x);
+  return {{{x[0], y[0], z[0], p[0]}, {x[1], y[1], z[1], p[1]}, {x[2], y[2], z[2], p[2]}, {0, 0, 0, 1}}};
+}
+
 void add_poses(const Surface& surface, const PathDomain& domain, std::vector<PassCurve> passes,
                const ToolPathOptions& options, ToolPath& path) {
   const double spacing = options.spacing;

@@ -96,6 +96,18 @@ std::string pose(const ToolPose& p, const char* indent) {
          field("z", z) + ", " + field("w", w) + "}\n";
 }
 
+/// Whether a text has characters that YAML does not permit, or reads as line breaks.
+bool has_control_character(const std::string& text) {
+  for (std::size_t k = 0; k < text.size(); ++k) {
+    const auto byte = [&](std::size_t at) { return at < text.size() ? static_cast<unsigned char>(text[at]) : 0; };
+    if (byte(k) < 0x20 || byte(k) == 0x7f) return true;
+    if (byte(k) == 0xc2 && byte(k + 1) >= 0x80 && byte(k + 1) < 0xa0) return true;  // U+0080 to U+009F
+    if (byte(k) == 0xe2 && byte(k + 1) == 0x80 && (byte(k + 2) == 0xa8 || byte(k + 2) == 0xa9))
+      return true;  // U+2028, U+2029
+  }
+  return false;
+}
+
 std::string ros_header(const std::string& frame, std::size_t number, double seconds) {
   auto whole = static_cast<std::int64_t>(seconds);
   auto nano = static_cast<std::int64_t>(std::lround(1e9 * (seconds - static_cast<double>(whole))));
@@ -163,6 +175,8 @@ std::string ros_yaml(const ToolPath& path, const RosOptions& options) {
   if (!(options.feed >= 0 && std::isfinite(options.feed)))
     throw InvalidArgument("feed is " + detail::number(options.feed) + "; it must be finite and >= 0");
   if (options.frame.empty()) throw InvalidArgument("the frame has no name");
+  if (has_control_character(options.frame))
+    throw InvalidArgument("the name of the frame contains a line break or another control character");
   const bool stamped = options.message == RosMessage::path;
   std::string text = ros_header(options.frame, 0, 0);
   text += path.poses.empty() ? "poses: []\n" : "poses:\n";

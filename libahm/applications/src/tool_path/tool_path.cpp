@@ -28,6 +28,8 @@ constexpr double no_height = std::numeric_limits<double>::quiet_NaN();
 
 /// Points of a curve that are farther than this from the surface are rejected, in spacings.
 constexpr double largest_curve_distance = 0.5;
+/// A straight line ends where it comes nearer to itself, in spacings.
+constexpr double least_return = 0.5;
 
 void check_positive(const std::string& name, double value) {
   if (!(value > 0 && std::isfinite(value)))
@@ -158,6 +160,44 @@ MeshCurve on_mesh(const PathDomain& domain, std::span<const Vec3> points, bool c
   return joined_curve(domain, found, closed && found.size() == points.size());
 }
 
+/// The part of a line around a point that does not come near itself. Both ends grow until they do.
+MeshCurve without_returns(const FaceMesh& mesh, const MeshCurve& line, const Vec3& around) {
+  struct Place {
+    Vec3 position, normal;
+    double along;
+  };
+  std::vector<Place> places;
+  std::size_t low = 0;
+  for (std::size_t k = 0; k < line.points.size(); ++k) {
+    const Vec3 position = mesh.position(line.points[k]);
+    const double step = k > 0 ? distance(position, places.back().position) : 0;
+    places.push_back({position, mesh.area_normal(line.points[k].face), k > 0 ? places.back().along + step : 0});
+    if (distance(position, around) < distance(places[low].position, around)) low = k;
+  }
+  std::size_t high = low;
+  const double start = places[low].along;
+  const auto returns = [&](const Place& place) {
+    for (std::size_t k = low; k <= high; ++k)
+      if (std::abs(places[k].along - place.along) > 4 * least_return &&
+          distance(places[k].position, place.position) < least_return && dot(places[k].normal, place.normal) > 0)
+        return true;
+    return false;
+  };
+  for (bool grows_down = true, grows_up = true; grows_down || grows_up;) {
+    grows_down = grows_down && low > 0, grows_up = grows_up && high + 1 < places.size();
+    if (grows_down && (!grows_up || start - places[low - 1].along <= places[high + 1].along - start)) {
+      grows_down = !returns(places[low - 1]);
+      if (grows_down) --low;
+    } else if (grows_up) {
+      grows_up = !returns(places[high + 1]);
+      if (grows_up) ++high;
+    }
+  }
+  const auto at = [](std::size_t k) { return static_cast<std::ptrdiff_t>(k); };
+  return {{line.points.begin() + at(low), line.points.begin() + at(high) + 1},
+          {line.faces.begin() + at(low), line.faces.begin() + at(high)}};
+}
+
 /// The points of a curve, joined on the surface.
 /// @param name   of the curve, for messages: "seed"
 /// @param fault  name of the error, a literal
@@ -222,6 +262,9 @@ struct SeedFinder {
         else
           half = trace_line(surface, line.point, side * line.direction, length).points;
       } catch (const InvalidArgument& e) {  // on the boundary, one side leaves the surface
+        if (e.fault() == "axis_along_normal")
+          throw InvalidArgument("seed_along_normal", "the direction of the seed line is perpendicular to the surface",
+                                "use a direction along the surface");
         if (side > 0 && points.empty())
           throw InvalidArgument("seed_off_surface", std::string("the seed line has no length: ") + e.what(),
                                 "use a direction along the surface");
@@ -230,7 +273,8 @@ struct SeedFinder {
       if (side < 0) std::reverse(half.begin(), half.end());
       points.insert(points.end(), half.begin() + (side > 0 && !points.empty() ? 1 : 0), half.end());
     }
-    return {on_mesh(domain, points, false, spacing)};
+    return {without_returns(domain.mesh, on_mesh(domain, points, false, spacing),
+                            (1 / spacing) * surface.position(line.point))};
   }
 };
 
@@ -318,7 +362,7 @@ ToolPath tool_path(const Surface& surface, const ToolPathOptions& options) {
   ToolPath path;
   path.spacing = options.spacing;
   path.uncovered_components = count_uncovered(domain, seeds);
-  add_poses(surface, domain, make_passes(domain, seeds, phase, options.progress), options, path);
+  add_poses(surface, domain, make_passes(domain, seeds, phase, options.spiral, options.progress), options, path);
   return path;
 }
 

@@ -33,8 +33,9 @@ struct CurveSeed {
   std::vector<Vec3> points;  ///< at least 2, at most half a spacing from the surface, world units
   bool closed = false;
 };
-/// The passes are parallel to the geodesic line through a point, in both directions to the boundary. On closed surfaces it
-/// ends after the length of the diagonal of the bounding box. From a point of the boundary it runs to one side.
+/// The passes are parallel to the geodesic line through a point, in both directions to the boundary. It ends where it comes
+/// within half a spacing of itself, and after the length of the diagonal of the bounding box. From a point of the boundary it
+/// runs to one side.
 struct LineSeed {
   SurfacePoint point;
   Vec3 direction;  ///< in space; projected to the surface
@@ -69,6 +70,9 @@ struct ToolPathOptions {
   double spacing = 0;  ///< geodesic distance between neighboring passes, world units; > 0
   ToolPathSeed seed = AutomaticSeed{};
   ToolPathRegion region = {};
+  /// Joins consecutive closed passes to spirals, which move by one spacing per turn. Where passes are open, or split, they
+  /// remain separate.
+  bool spiral = false;
   double step = 0;  ///< longest distance between poses of a pass, world units; 0: a quarter of the spacing
   /// Largest distance of a pass from the chords between its poses, world units; 0: a 200th of the spacing.
   double chord_error = 0;
@@ -106,19 +110,24 @@ struct ToolPose {
   double arclength;  ///< length of the path up to this pose, world units
 };
 
+/// A pose as a 4 x 4 matrix, row by row. It takes coordinates of the tool (x along the travel, z along the axis) to those of
+/// the surface.
+std::array<std::array<double, 4>, 4> pose_matrix(const ToolPose& pose);
+
 /// Why a pass is where it is.
 enum class PassOrigin {
   seed,       ///< the seed curve itself
   level,      ///< at a multiple of the spacing from the seed
   cut_locus,  ///< where fronts from two sides meet, and leave a gap or would cover twice
   boundary,   ///< along the boundary, to close a gap
+  spiral,     ///< several closed passes as one
 };
 
 struct ToolPass {
   std::size_t begin, end;  ///< its poses
   bool closed;             ///< whether it ends where it begins
   PassOrigin origin;
-  double distance;  ///< distance from the seed, world units; on cut loci and boundaries the mean
+  double distance;  ///< distance from the seed, world units; on cut loci, boundaries and spirals the mean
   double length;    ///< world units
 };
 
@@ -139,11 +148,12 @@ struct ToolPath {
 ///
 /// Passes are the level sets of the exact distance from the seed curve, on flat faces. Where two fronts meet at an acute
 /// angle to the cut locus, one pass along the cut locus replaces the pair that would cover twice, or fills the gap. The same
-/// is done along boundaries. Passes are ordered by their nearest ends and improved by 2-opt exchanges.
+/// is done along boundaries. The first and the last turn of a spiral move by half a spacing, because they border on other
+/// passes, or on the edge of the region. Passes are ordered by their nearest ends and improved by 2-opt exchanges.
 /// @throws InvalidArgument (a value that is not finite or out of range; faults "spacing_too_large": larger than the
-/// region, "seed_off_surface", "region_off_surface", "region_not_enclosed": a curve that does not divide the surface,
-/// "region_empty"; a surface without positions or triangles), InvalidGeometry (faces without
-/// area, needles: as `exact::exact_map`), ResourceExhausted, Cancelled
+/// region, "seed_off_surface", "seed_along_normal": a line without a direction along the surface, "region_off_surface",
+/// "region_not_enclosed": a curve that does not divide the surface, "region_empty"; a surface without positions or triangles),
+/// InvalidGeometry (faces without area, needles: as `exact::exact_map`), ResourceExhausted, Cancelled
 ToolPath tool_path(const Surface& surface, const ToolPathOptions& options);
 
 /// How well a tool path covers a surface.

@@ -59,7 +59,7 @@ struct RosOptions {
 
 /// A path as a message of ROS 1, in YAML as `rostopic pub -f` reads it. Orientations take z to the tool axis and x to the
 /// direction of travel. ROS expects meters.
-/// @throws InvalidArgument (a feed that is negative or not finite, an empty frame)
+/// @throws InvalidArgument (a feed that is negative or not finite, a frame that is empty or contains control characters)
 std::string ros_yaml(const ToolPath& path, const RosOptions& options = {});
 
 }  // namespace ahm
