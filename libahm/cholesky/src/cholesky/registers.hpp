@@ -19,6 +19,26 @@ using Four = Lanes<4>::Type;
 [[gnu::always_inline]] inline const Four* four(const double* numbers) { return reinterpret_cast<const Four*>(numbers); }
 [[gnu::always_inline]] inline Four* four(double* numbers) { return reinterpret_cast<Four*>(numbers); }
 
+/// Register sets that loops are compiled for.
+enum class Registers {
+  plain,  ///< of any processor
+  avx2,
+  avx512
+};
+
+/// The widest registers of this processor.
+inline Registers widest_registers() {
+#ifdef __x86_64__
+  static const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+  static const Registers widest = !avx2                               ? Registers::plain
+                                  : __builtin_cpu_supports("avx512f") ? Registers::avx512
+                                                                      : Registers::avx2;
+  return widest;
+#else
+  return Registers::plain;
+#endif
+}
+
 namespace detail {
 
 #ifdef __x86_64__
@@ -34,15 +54,13 @@ template <class Body>
 
 }  // namespace detail
 
-/// Calls body(N), N = 8 or 4: compiled for AVX-512 (N = 8) or AVX2 if the processor has it, otherwise for any processor. N is a
+/// Calls body(N): compiled for AVX-512 (N = 8) or AVX2 (N = 4) if the processor has it, otherwise for any processor (N = 4). N is a
 /// `std::integral_constant`. All that `body` calls is compiled with it. Results differ between processors by rounding.
 template <class Body>
 auto in_widest_registers(const Body& body) {
 #ifdef __x86_64__
-  static const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-  static const bool avx512 = avx2 && __builtin_cpu_supports("avx512f");
-  if (avx512) return detail::with_avx512(body);
-  if (avx2) return detail::with_avx2(body);
+  if (widest_registers() == Registers::avx512) return detail::with_avx512(body);
+  if (widest_registers() == Registers::avx2) return detail::with_avx2(body);
 #endif
   return body(std::integral_constant<int, 4>());
 }
