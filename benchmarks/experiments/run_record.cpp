@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "ahm/error.hpp"
-#include "ahm/heat/heat_operators.hpp"
+#include "ahm/cholesky/cholesky.hpp"
 #include "measure.hpp"
 
 namespace ahm::bench {

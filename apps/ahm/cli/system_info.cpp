@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "ahm/heat/heat_operators.hpp"
+#include "ahm/cholesky/cholesky.hpp"
 
 namespace ahm::app {
 

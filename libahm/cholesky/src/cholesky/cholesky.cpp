@@ -9,6 +9,7 @@
 #include "ahm/error.hpp"
 #include "cholesky/multifrontal.hpp"
 #include "cholesky/ordering.hpp"
+#include "cholesky/registers.hpp"
 #include "cholesky/supernodal_pattern.hpp"
 #include "cholesky/triangular_solve.hpp"
 
