@@ -17,7 +17,7 @@ using Eigen::MatrixXd, Eigen::VectorXd;
 
 /// Largest residual |K^-1 x - mu x| / mu of an accepted eigenvector. One more block reduces it by about a factor of ten.
 constexpr double residual_tolerance = 1e-11;
-constexpr Offset blocks_at_once = 8;      ///< blocks of rows per task
+constexpr Offset blocks_at_once = 64;     ///< blocks of rows per task
 constexpr Offset columns_of_panel = 128;  ///< columns of the basis in one piece of memory
 constexpr Offset b = lanczos_block;
 static_assert(b == block_columns);
@@ -49,41 +49,43 @@ class Basis {
 
   /// V^T Q for the columns from `first`.
   MatrixXd coefficients(const Block& Q, Offset first = 0) const {
-    std::vector<MatrixXd> parts(static_cast<std::size_t>((blocks() + blocks_at_once - 1) / blocks_at_once));
+    std::vector<Rows> parts(static_cast<std::size_t>((blocks() + blocks_at_once - 1) / blocks_at_once));
     for_each_block([&](Offset k) {
-      MatrixXd& part = parts[static_cast<std::size_t>(k / blocks_at_once)];
-      if (part.size() == 0) part = MatrixXd::Zero(size_ - first, b);
-      std::vector<double> block(b * block_stride);
-      copy_rows(Q.data() + k * block_rows, n_, rows(k), b, block.data());
+      Rows& part = parts[static_cast<std::size_t>(k / blocks_at_once)];
+      if (part.size() == 0) part = Rows::Zero(size_ - first, b);
+      double block[block_rows * b] = {};
+      for (Offset c = 0; c < b; ++c)
+        for (Offset r = 0; r < rows(k); ++r) block[r * b + c] = Q[static_cast<std::size_t>(c * n_ + k * block_rows + r)];
       for_each_panel(first, size_, [&](Offset from, Offset columns) {
-        add_transposed_product(at(k, from), columns, block.data(), &part(from - first, 0), size_ - first);
+        add_transposed_product(at(k, from), columns, block, part.data() + (from - first) * b);
       });
     });
     MatrixXd sum = MatrixXd::Zero(size_ - first, b);
-    for (const MatrixXd& part : parts) sum += part;
+    for (const Rows& part : parts) sum += part;
     return sum;
   }
 
   /// X += factor V C for the columns from `first`. X is n x C.cols(), column major.
   void add_to(std::span<double> X, const MatrixXd& C, double factor, Offset first = 0) const {
-    using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, b, Eigen::RowMajor>;
     for (Offset c = 0; c < C.cols(); c += b) {
       const Offset count = std::min(b, C.cols() - c);
-      RowMajor some = RowMajor::Zero(C.rows(), b);
+      Rows some = Rows::Zero(C.rows(), b);
       some.leftCols(count) = factor * C.middleCols(c, count);
       for_each_block([&](Offset k) {
         double* const own = X.data() + c * n_ + k * block_rows;
-        std::vector<double> block(b * block_stride);
-        copy_rows(own, n_, rows(k), count, block.data());
+        double block[b * block_stride] = {};
+        copy_rows(own, n_, rows(k), count, block);
         for_each_panel(first, first + C.rows(), [&](Offset from, Offset columns) {
-          add_product(at(k, from), columns, some.data() + (from - first) * b, block.data());
+          add_product(at(k, from), columns, some.data() + (from - first) * b, block);
         });
-        for (Offset a = 0; a < count; ++a) std::copy_n(block.data() + a * block_stride, rows(k), own + a * n_);
+        for (Offset a = 0; a < count; ++a) std::copy_n(block + a * block_stride, rows(k), own + a * n_);
       });
     }
   }
 
  private:
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, b, Eigen::RowMajor>;
+
   Offset blocks() const { return (n_ + block_rows - 1) / block_rows; }
   Offset rows(Offset block) const { return std::min(block_rows, n_ - block * block_rows); }
   /// A column in a block of rows. The next columns of the panel follow.

@@ -5,34 +5,31 @@
 namespace ahm {
 namespace {
 
-/// C += A^T B for 4 columns of A and J of B, in registers of N doubles.
-template <int N, int J>
-[[gnu::always_inline]] inline void add_dot_products(const double* A, const double* B, double* C, Offset C_stride) {
+/// C += A^T B for N columns of A and 2 N of B, in registers of N doubles.
+template <int N>
+[[gnu::always_inline]] inline void add_transposed_tile(const double* A, const double* B, double* C) {
   using Vector = typename Lanes<N>::Type;
-  Vector sum[J][4] = {};
-  for (Offset r = 0; r < block_rows; r += N)
-#pragma GCC unroll 4
-    for (int j = 0; j < J; ++j) {
-      const Vector* b = reinterpret_cast<const Vector*>(B + j * block_stride + r);
-#pragma GCC unroll 4
-      for (int i = 0; i < 4; ++i) {
-        const Vector* a = reinterpret_cast<const Vector*>(A + i * block_stride + r);
-        sum[j][i] += *a * *b;
-      }
-    }
-  for (int j = 0; j < J; ++j)
-    for (int i = 0; i < 4; ++i)
-      for (int lane = 0; lane < N; ++lane) C[j * C_stride + i] += sum[j][i][lane];
+  Vector sum[N][2] = {};
+  for (Offset r = 0; r < block_rows; ++r, B += block_columns) {
+    const Vector* b = reinterpret_cast<const Vector*>(B);
+#pragma GCC unroll 8
+    for (int i = 0; i < N; ++i)
+#pragma GCC unroll 2
+      for (int v = 0; v < 2; ++v) sum[i][v] += A[i * block_stride + r] * b[v];
+  }
+  for (int i = 0; i < N; ++i) {
+    Vector* c = reinterpret_cast<Vector*>(C + i * block_columns);
+    for (int v = 0; v < 2; ++v) c[v] += sum[i][v];
+  }
 }
 
 }  // namespace
 
-void add_transposed_product(const double* A, Offset columns, const double* B, double* C, Offset C_stride) {
+void add_transposed_product(const double* A, Offset columns, const double* B, double* C) {
   in_widest_registers([&](auto N) {
-    constexpr int J = N() / 2;  // 4 J sums fill half of the registers
-    for (Offset i = 0; i < columns; i += 4)
-      for (Offset j = 0; j < block_columns; j += J)
-        add_dot_products<N(), J>(A + i * block_stride, B + j * block_stride, C + j * C_stride + i, C_stride);
+    for (Offset i = 0; i < columns; i += N())
+      for (Offset j = 0; j < block_columns; j += 2 * N())
+        add_transposed_tile<N()>(A + i * block_stride, B + j, C + i * block_columns + j);
   });
 }
 

@@ -1,5 +1,5 @@
 /// \file
-/// Products of tall matrices (n rows, a few columns). They are stored in blocks of rows, one after another, each column major.
+/// Products of tall matrices (n rows, a few columns). A tall matrix is stored in blocks of rows, one after another.
 #pragma once
 
 #include <span>
@@ -8,20 +8,20 @@
 
 namespace ahm {
 
-inline constexpr Offset block_columns = 16;  ///< columns of the matrices B and X below
-inline constexpr Offset block_rows = 512;
-inline constexpr Offset block_stride = 520;  ///< from one column to the next: an odd number of cache lines, so that columns use all sets
+inline constexpr Offset block_columns = 16;  ///< columns of the matrices B, C and X below
+inline constexpr Offset block_rows = 64;
+inline constexpr Offset block_stride = 72;  ///< from one column to the next: an odd number of cache lines, so that columns use all sets
 
 /// C += A^T B for a block of rows.
-/// @param A        `columns` columns, a multiple of 4
-/// @param B        `block_columns` columns
-/// @param C        columns x `block_columns`, column major
-/// @param C_stride from one column of C to the next
-void add_transposed_product(const double* A, Offset columns, const double* B, double* C, Offset C_stride);
+/// @param A  `columns` columns, a multiple of 8, with `block_stride`
+/// @param B  block_rows x block_columns, row major
+/// @param C  columns x block_columns, row major
+void add_transposed_product(const double* A, Offset columns, const double* B, double* C);
 
 /// X += A C for a block of rows.
-/// @param C  columns x `block_columns`, row major
-/// @param X  `block_columns` columns
+/// @param A  `columns` columns with `block_stride`
+/// @param C  columns x block_columns, row major
+/// @param X  block_columns columns with `block_stride`
 void add_product(const double* A, Offset columns, const double* C, double* X);
 
 }  // namespace ahm
