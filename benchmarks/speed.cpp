@@ -2,7 +2,7 @@
 
 #include <time.h>
 
-#include "cholesky/blas.hpp"
+#include "cholesky/registers.hpp"
 
 namespace ahm::bench {
 
@@ -20,10 +20,22 @@ double copy_bandwidth() {
          });
 }
 
-double gemm_speed(bool is_complex) {
-  OneBlasThread one_thread;
-  const auto speed = [](auto product) { return product.flops / median_cpu_seconds(product); };
-  return is_complex ? speed(ComplexProduct()) : speed(RealProduct());
+double arithmetic_speed() {
+  constexpr int steps = 1 << 23;
+  volatile double factor = 0.999, sink = 0;
+  return in_widest_registers([&](auto N) {
+    using Vector = typename Lanes<N()>::Type;
+    constexpr int sums = 2 * N();  // enough to hide the latency of an operation; they fit into the registers
+    const double seconds = median_cpu_seconds([&] {
+      const double f = factor;
+      Vector sum[sums] = {};
+      for (int k = 0; k < steps; ++k)
+#pragma GCC unroll 16
+        for (Vector& one : sum) one = one * f + f;
+      for (const Vector& one : sum) sink = sink + one[0];
+    });
+    return 2.0 * steps * sums * N() / seconds;
+  });
 }
 
 }  // namespace ahm::bench

@@ -1,17 +1,14 @@
 /// \file
-/// Speed of memory and BLAS on one thread, in processor time, which a busy machine hardly changes. Every call measures
+/// Speed of memory and arithmetic on one thread, in processor time, which a busy machine hardly changes. Every call measures
 /// again, since the speed of a shared machine varies.
 ///
 /// \code
-/// const double share = flops / ahm::bench::median_cpu_seconds(work) / ahm::bench::gemm_speed(false);
+/// const double share = flops / ahm::bench::median_cpu_seconds(work) / ahm::bench::arithmetic_speed();
 /// \endcode
 #pragma once
 
-#include <dlfcn.h>
-
 #include <algorithm>
 #include <array>
-#include <complex>
 #include <vector>
 
 namespace ahm::bench {
@@ -40,8 +37,9 @@ double median_cpu_seconds(Work&& work) {
 /// the caches. Median of five.
 double copy_bandwidth();
 
-/// Real floating point operations per second of the BLAS: dgemm or zgemm of matrices 512 x 512. Median of five.
-double gemm_speed(bool is_complex);
+/// Real floating point operations per second where the processor is limited by nothing else: products added to sums in its widest
+/// registers. Median of five.
+double arithmetic_speed();
 
 /// The arrays of STREAM.
 struct Stream {
@@ -61,27 +59,5 @@ struct Stream {
     return sum;
   }
 };
-
-template <class Number>
-using Gemm = void(const char*, const char*, const int*, const int*, const int*, const Number*, const Number*,
-                  const int*, const Number*, const int*, const Number*, Number*, const int*);
-
-/// A product of two matrices by the BLAS of this process.
-template <class Number>
-struct Product {
-  static constexpr int side = 512;
-  static constexpr bool is_complex = sizeof(Number) > sizeof(double);
-  static constexpr double flops = (is_complex ? 8.0 : 2.0) * side * side * side;
-  std::vector<Number> x = std::vector<Number>(side * side, 1.0), y = x, z = x;
-
-  Gemm<Number>* gemm = reinterpret_cast<Gemm<Number>*>(dlsym(RTLD_DEFAULT, is_complex ? "zgemm_" : "dgemm_"));
-
-  void operator()() {
-    const Number one = 1.0, zero = 0.0;
-    gemm("N", "N", &side, &side, &side, &one, x.data(), &side, y.data(), &side, &zero, z.data(), &side);
-  }
-};
-using RealProduct = Product<double>;
-using ComplexProduct = Product<std::complex<double>>;
 
 }  // namespace ahm::bench

@@ -18,7 +18,7 @@ configure_package_config_file(cmake/ahm-config.cmake.in ${CMAKE_CURRENT_BINARY_D
 write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/ahm-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES
   ${CMAKE_CURRENT_BINARY_DIR}/ahm-config.cmake ${CMAKE_CURRENT_BINARY_DIR}/ahm-config-version.cmake
-  cmake/FindCHOLMOD.cmake cmake/FindFLANN.cmake cmake/FindLapackBlas.cmake cmake/FindMinizip.cmake cmake/FindPCLLibraries.cmake
+  cmake/FindCHOLMOD.cmake cmake/FindFLANN.cmake cmake/FindMinizip.cmake cmake/FindPCLLibraries.cmake
   DESTINATION ${AHM_CMAKE_DIR} COMPONENT dev)
 
 # pkg-config files ahm-core, ahm-pointcloud, ...; none for the components that depend on PCL or GoogleTest. A static libahm also
@@ -26,16 +26,13 @@ install(FILES
 file(RELATIVE_PATH AHM_PREFIX_FROM_PC "${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig" "${CMAKE_INSTALL_PREFIX}")
 string(REGEX REPLACE "/$" "" AHM_PREFIX_FROM_PC "${AHM_PREFIX_FROM_PC}")
 set(private_cholesky "")
-if(AHM_WITH_BLAS)
-  string(APPEND private_cholesky "-llapack -lblas -ldl ")
-endif()
 if(AHM_WITH_THREADS)
   string(APPEND private_cholesky "-pthread")
   set(private_core "-pthread")
 endif()
 set(private_cholmod "")
 if(AHM_WITH_CHOLMOD)
-  set(private_cholmod "-lcholmod -lamd -lsuitesparseconfig -llapack -lblas")
+  set(private_cholmod "-lcholmod -lamd -lsuitesparseconfig -llapack -lblas -ldl")
 endif()
 set(private_flann "")
 set(private_io "-ldl")
@@ -101,7 +98,6 @@ set(CPACK_STRIP_FILES ON)
 set(soname ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libahm${soname})
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libs)
-set(CPACK_DEBIAN_LIBRARY_PACKAGE_RECOMMENDS libopenblas0-pthread)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA ${CMAKE_CURRENT_SOURCE_DIR}/packaging/debian/triggers)
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME libahm-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)

@@ -30,7 +30,7 @@ class Ahm(ConanFile):
 
     def generate(self):
         toolchain = CMakeToolchain(self)
-        for option in ("WITH_BLAS", "WITH_FLANN", "WITH_PCL", "BUILD_APPS", "BUILD_PYTHON", "BUILD_TESTS", "BUILD_EXAMPLES"):
+        for option in ("WITH_FLANN", "WITH_PCL", "BUILD_APPS", "BUILD_PYTHON", "BUILD_TESTS", "BUILD_EXAMPLES"):
             toolchain.cache_variables["AHM_" + option] = False
         toolchain.generate()
         CMakeDeps(self).generate()

@@ -82,9 +82,9 @@ threads() {
   build/tsan/bin/test_threads --gtest_brief=1
 }
 
-# The libraries without BLAS and threads.
+# The libraries without threads.
 lean() {
-  echo "Without BLAS and threads (build/lean) ..."
+  echo "Without threads (build/lean) ..."
   cmake --preset lean >/dev/null
   cmake --build --preset lean
   for test in cholesky core trimesh; do

@@ -9,7 +9,7 @@ set -euo pipefail
 
 program=(
   build-essential cmake ninja-build
-  libeigen3-dev libblas-dev liblapack-dev libopenblas0-pthread  # linear algebra, with an optimized BLAS
+  libeigen3-dev                                               # linear algebra
   libnanoflann-dev                                            # neighbor search
   libcli11-dev nlohmann-json3-dev libfmt-dev                  # the program
   libstb-dev libjs-three                                      # pictures
@@ -23,7 +23,8 @@ tests=(
   libflann-dev liblz4-dev                                     # neighbor search
   libpcl-dev                                                  # PCD files, voxel grid, outlier removal
   libminizip-dev                                              # .npz files
-  libgtest-dev libbenchmark-dev libsuitesparse-dev            # tests and benchmarks
+  libgtest-dev libbenchmark-dev                               # tests and benchmarks
+  libsuitesparse-dev libopenblas0-pthread                     # CHOLMOD, for comparisons, with an optimized BLAS
   libcgal-dev python3-matplotlib                              # exact distances and plots of the experiments
   libpetsc-real-dev libopenmpi-dev openmpi-bin                # ahm-mpi: maps on many machines
   chromium chromium-driver python3-selenium                   # the viewer in a browser

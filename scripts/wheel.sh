@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Builds a self-contained wheel of the Python package in build/wheel: static libraries, no BLAS, no SuiteSparse. Checks the libraries that
+# Builds a self-contained wheel of the Python package in build/wheel: static libraries. Checks the libraries that
 # it needs, installs it into a new virtual environment, and runs the tests of the package that need only numpy and pytest.
 #   wheel.sh
 # The wheel is packed by Debian's python3-wheel. numpy and pytest in the environment are Debian's, so this works without a package index.
@@ -12,7 +12,7 @@ folder=build/wheel
 echo "Building ($folder) ..."
 # libgcc is shared: exceptions pass through functions of glibc, such as pthread_once, which use the shared one.
 cmake -S . -B "$folder" -G Ninja -DCMAKE_BUILD_TYPE=Release -DAHM_UNITY_BUILD=ON -DPython3_EXECUTABLE="$python" \
-  -DAHM_WITH_BLAS=OFF -DAHM_WITH_FLANN=OFF -DAHM_WITH_MINIZIP=OFF -DAHM_WITH_PCL=OFF -DAHM_WITH_PUGIXML=OFF -DAHM_WITH_ZLIB=OFF \
+  -DAHM_WITH_FLANN=OFF -DAHM_WITH_MINIZIP=OFF -DAHM_WITH_PCL=OFF -DAHM_WITH_PUGIXML=OFF -DAHM_WITH_ZLIB=OFF \
   -DAHM_BUILD_APPS=OFF -DAHM_BUILD_EXAMPLES=OFF -DAHM_BUILD_TESTS=OFF -DAHM_INSTALL=OFF \
   -DCMAKE_MODULE_LINKER_FLAGS="-static-libstdc++ -Wl,--exclude-libs,ALL" >/dev/null
 cmake --build "$folder" --target ahm_python

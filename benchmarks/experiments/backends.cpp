@@ -266,7 +266,7 @@ Table backends(const Settings& settings) {
                     table.seen.empty() ? "Sphere, " + largest + " vertices: " : "; ", as, rows.mean("median error"),
                     rows.mean("build s") + rows.mean("first map s"), rows.mean("additional map s"));
   }
-  table.seen += fmt::format(". BLAS: {}.", linear_algebra_info().blas);
+  table.seen += fmt::format(". Registers: {}.", register_set());
   return table;
 }
 

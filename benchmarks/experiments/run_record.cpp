@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "ahm/error.hpp"
-#include "ahm/heat/heat_operators.hpp"
+#include "ahm/cholesky/cholesky.hpp"
 #include "measure.hpp"
 
 namespace ahm::bench {
@@ -43,14 +43,13 @@ double peak_since_megabytes() {
 }
 
 nlohmann::ordered_json machine() {
-  const LinearAlgebraInfo algebra = linear_algebra_info();
   return {{"cpu", proc_entry("/proc/cpuinfo", "model name")},
           {"cores", std::thread::hardware_concurrency()},
           {"memory", proc_entry("/proc/meminfo", "MemTotal")},
           {"compiler", __VERSION__},
           {"ahm", AHM_VERSION},
           {"eigen", fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)},
-          {"blas", algebra.blas}};
+          {"registers", register_set()}};
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 #include <benchmark/benchmark.h>
 
 #include "ahm/heat/heat_operators.hpp"
-#include "cholesky/blas.hpp"
+#include "ahm/cholesky/cholesky.hpp"
 
 namespace ahm::bench {
 
@@ -14,8 +14,7 @@ int run_kernels(std::vector<std::string> options) {
   int argc = static_cast<int>(argv.size());
   benchmark::Initialize(&argc, argv.data());
   if (benchmark::ReportUnrecognizedArguments(argc, argv.data())) return 1;
-  const LinearAlgebraInfo info = linear_algebra_info();
-  benchmark::AddCustomContext("BLAS", info.blas);
+  benchmark::AddCustomContext("registers", register_set());
   benchmark::RunSpecifiedBenchmarks();
   return 0;
 }

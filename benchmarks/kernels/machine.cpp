@@ -1,7 +1,5 @@
 #include "machine.hpp"
 
-#include "cholesky/blas.hpp"
-
 namespace ahm::bench {
 namespace {
 
@@ -37,16 +35,6 @@ void read(benchmark::State& state) {
 }
 BENCHMARK(read)->Name("machine/read")->Unit(benchmark::kMillisecond);
 
-template <class Multiply>
-void gemm(benchmark::State& state) {
-  OneBlasThread one_thread;
-  Multiply multiply;
-  for (auto _ : state) multiply();
-  state.counters["GFlop/s"] = benchmark::Counter(1e-9 * multiply.flops, benchmark::Counter::kIsIterationInvariantRate);
-}
-BENCHMARK(gemm<RealProduct>)->Name("machine/dgemm")->Unit(benchmark::kMillisecond);
-BENCHMARK(gemm<ComplexProduct>)->Name("machine/zgemm")->Unit(benchmark::kMillisecond);
-
 }  // namespace
 
 void report_bandwidth(benchmark::State& state, double bytes, double seconds) {
@@ -54,9 +42,9 @@ void report_bandwidth(benchmark::State& state, double bytes, double seconds) {
   state.counters["of copy"] = bytes / seconds / copy_bandwidth();
 }
 
-void report_flops(benchmark::State& state, double flops, bool is_complex, double seconds) {
+void report_flops(benchmark::State& state, double flops, double seconds) {
   state.counters["GFlop/s"] = 1e-9 * flops / seconds;
-  state.counters["of gemm"] = flops / seconds / gemm_speed(is_complex);
+  state.counters["of arithmetic"] = flops / seconds / arithmetic_speed();
 }
 
 }  // namespace ahm::bench

@@ -19,7 +19,7 @@ double run(benchmark::State& state, const Work& work) {
 /// Reports bytes of memory traffic as "GB/s" and as a share of `copy_bandwidth()`.
 void report_bandwidth(benchmark::State& state, double bytes, double seconds);
 
-/// Reports real operations as "GFlop/s" and as a share of `gemm_speed`.
-void report_flops(benchmark::State& state, double flops, bool is_complex, double seconds);
+/// Reports real operations as "GFlop/s" and as a share of `arithmetic_speed()`.
+void report_flops(benchmark::State& state, double flops, double seconds);
 
 }  // namespace ahm::bench

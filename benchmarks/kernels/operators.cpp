@@ -52,7 +52,7 @@ void factorize(benchmark::State& state, Shape shape, Ordering ordering, bool sca
   state.counters["stored"] = static_cast<double>(factor.nonzeros());
   state.counters["MB"] = 1e-6 * static_cast<double>(factor.bytes());
   state.SetItemsProcessed(state.iterations() * state.range(0));
-  report_flops(state, symbolic.operations() * (scalar ? 1 : 4), !scalar, seconds);
+  report_flops(state, symbolic.operations() * (scalar ? 1 : 4), seconds);
 }
 
 void add_sizes(benchmark::internal::Benchmark* kernel) {

@@ -50,7 +50,7 @@ void solve(benchmark::State& state, Shape shape, bool scalar, bool point) {
   state.counters["MB"] = 1e-6 * static_cast<double>(factor.bytes());
   state.counters["us/column"] = 1e6 * seconds / columns;
   const double flops = 4.0 * static_cast<double>(factor.nonzeros()) * columns * (scalar ? 1 : 4);
-  if (columns > 4) return report_flops(state, flops, !scalar, seconds);
+  if (columns > 4) return report_flops(state, flops, seconds);
   state.counters["GFlop/s"] = 1e-9 * flops / seconds;
   report_bandwidth(state, 2.0 * static_cast<double>(factor.bytes()) + 32.0 * static_cast<double>(rhs.size()), seconds);
 }

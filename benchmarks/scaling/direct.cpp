@@ -12,7 +12,6 @@
 
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
-#include "cholesky/blas.hpp"
 #include "scaling/sizes.hpp"
 #include "shapes.hpp"
 #include "speed.hpp"
@@ -154,7 +153,7 @@ std::vector<double> by_lu(Index n, Variant variant) {
   const CsrGraph& graph = surface.graph();
   std::optional<DirectSolver> solver;
   std::vector<Complex> phi;
-  const OneBlasThread one;
+  if (void* set = dlsym(RTLD_DEFAULT, "openblas_set_num_threads")) reinterpret_cast<void (*)(int)>(set)(1);
   // CHOLMOD, which factors the frames, uses OpenMP. A forked process has no OpenMP threads, so parallel regions are
   // switched off.
   if (void* set = dlsym(RTLD_DEFAULT, "omp_set_max_active_levels")) reinterpret_cast<void (*)(int)>(set)(0);

@@ -13,7 +13,6 @@
 #include "ahm/maps/log_map_solver.hpp"
 #include "ahm/pointcloud/point_cloud_surface.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
-#include "cholesky/blas.hpp"
 #include "heat/heat_system.hpp"
 #include "scaling/sizes.hpp"
 #include "shapes.hpp"
@@ -23,7 +22,7 @@ namespace ahm::bench {
 namespace {
 
 // The lower bound counts bytes that are read and written once, at the speed of a copy, and the operations of the
-// factorizations at the speed of dgemm and zgemm. All else is free.
+// factorizations at the speed of arithmetic in registers. All else is free.
 constexpr std::array stages{"read",
                             "graph",
                             "assemble",
@@ -89,13 +88,13 @@ double file_bytes(const std::filesystem::path& path) { return static_cast<double
 
 /// Speeds of one thread: bytes of a copy and operations per second.
 struct Speeds {
-  double copy, dgemm, zgemm;
+  double copy, arithmetic;
 };
 
 /// Measured in a process of its own, so that its arrays do not add to the memory of the stages.
 Speeds measured_speeds() {
-  const auto all = in_own_process(3, [] { return std::vector{copy_bandwidth(), gemm_speed(false), gemm_speed(true)}; });
-  return {all[0], all[1], all[2]};
+  const auto all = in_own_process(2, [] { return std::vector{copy_bandwidth(), arithmetic_speed()}; });
+  return {all[0], all[1]};
 }
 
 /// Peak memory from points and faces to the first map, MB.
@@ -111,7 +110,7 @@ double peak_to_first_map(Index n) {
 /// n, then processor time and lower bound of each stage, seconds.
 template <class Input>
 std::vector<double> measure(Index n, const Speeds& speeds) {
-  const auto [copy, dgemm, zgemm] = speeds;
+  const auto [copy, arithmetic] = speeds;
   const Input input(n);
   const io::TemporaryFolder folder("ahm_bench_");
   const std::filesystem::path file = folder.directory() / "input.ply";
@@ -150,7 +149,7 @@ std::vector<double> measure(Index n, const Speeds& speeds) {
     const double flops = symbolic.operations();
     for (const bool scalar : {true, false}) {
       const auto factored = [&] { return CholeskyFactor(scalar ? matrices.A : matrices.B, symbolic, "benchmark"); };
-      add(median_seconds(factored), scalar ? flops / dgemm : 4 * flops / zgemm);
+      add(median_seconds(factored), (scalar ? 1 : 4) * flops / arithmetic);
       factor_bytes += static_cast<double>(factored().bytes());
     }
   }
@@ -180,7 +179,7 @@ void add_rows(const char* shape, Index n, Table& table) {
   for (std::size_t s = 0; s < stages.size(); ++s) {
     const double time = numbers[1 + 2 * s], least = numbers[2 + 2 * s];
     table.add({shape, static_cast<Index>(numbers[0]), stages[s], time, least, time / least, peak, 1e-9 * speeds.copy,
-               1e-9 * speeds.dgemm, 1e-9 * speeds.zgemm});
+               1e-9 * speeds.arithmetic});
   }
 }
 
@@ -188,7 +187,7 @@ void add_rows(const char* shape, Index n, Table& table) {
 
 Table stages_of_a_map(const Settings& settings) {
   Table table({"shape", "vertices", "stage", "cpu s", "least s", "times the least", "peak MB to the first map",
-               "copy GB/s", "dgemm GFlop/s", "zgemm GFlop/s"});
+               "copy GB/s", "arithmetic GFlop/s"});
   for (const Index n : sizes(settings, 600, {10000, 40000, 160000, 640000})) {
     add_rows<MeshInput>("mesh", n, table);
     add_rows<CloudInput>("cloud", n, table);

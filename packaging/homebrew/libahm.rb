@@ -12,7 +12,7 @@ class Libahm < Formula
 
   def install
     system "cmake", "-S", ".", "-B", "build", "-G", "Ninja", *std_cmake_args,
-           *%w[BLAS FLANN MINIZIP PCL PUGIXML].map { |name| "-DAHM_WITH_#{name}=OFF" },
+           *%w[FLANN MINIZIP PCL PUGIXML].map { |name| "-DAHM_WITH_#{name}=OFF" },
            *%w[APPS PYTHON TESTS EXAMPLES].map { |name| "-DAHM_BUILD_#{name}=OFF" }
     system "cmake", "--build", "build", "--target", "install"
   end

@@ -14,7 +14,6 @@
 
 #include "ahm/cholesky/conjugate_gradient.hpp"
 #include "ahm/error.hpp"
-#include "cholesky/blas.hpp"
 #include "cholesky/multifrontal.hpp"
 #include "cholesky/supernodal_pattern.hpp"
 #include "cholesky/triangular_solve.hpp"
@@ -80,7 +79,6 @@ void expect_factor(Offset rows, Offset columns) {
 }
 
 TEST(FactorFront, IsEigensOfEverySmallFrontAndOfLargeOnes) {
-  const OneBlasThread one_thread;
   std::vector<std::array<Offset, 2>> sizes{{150, 7}, {150, 150}, {301, 7}, {301, 150}, {500, 320}};
   ASSERT_TRUE(is_large_front(500, 320));
   sizes.push_back({700, 45});   // several blocks of rows below
@@ -108,7 +106,6 @@ TEST(FactorFront, HasNoDenormalNumbers) {
 #ifndef __SSE2__
   GTEST_SKIP() << "for x86";
 #endif
-  const OneBlasThread one_thread;
   for (const auto& [rows, columns, threads] : {std::array{23, 7, 1}, {700, 45, 1}, {700, 45, 3}}) {
     expect_zeros<1>(rows, columns, static_cast<unsigned>(threads));
     expect_zeros<2>(rows, columns, static_cast<unsigned>(threads));
@@ -118,7 +115,6 @@ TEST(FactorFront, HasNoDenormalNumbers) {
 }
 
 TEST(FactorFront, IsTheSameOnAnyNumberOfThreads) {
-  const OneBlasThread one_thread;
   constexpr Offset rows = 700, columns = 45;
   ASSERT_TRUE(is_large_front(rows, columns));
   const Matrix<2> K = front_of<2>(rows, columns), unset = Matrix<2>::Zero(rows - columns, rows - columns);
@@ -133,7 +129,6 @@ TEST(FactorFront, IsTheSameOnAnyNumberOfThreads) {
 }
 
 TEST(FactorFront, ReturnsTheNumberOfGoodPivots) {
-  const OneBlasThread one_thread;
   for (const Offset columns : {9, 320})
     for (const Offset bad : {Offset{0}, Offset{5}, columns - 1})
       for (const double pivot : {-1.0, 0.0, static_cast<double>(NAN)}) {
@@ -394,16 +389,6 @@ TEST(SolveGroups, HaveTheSameSolutionOnAnyNumberOfThreads) {
       }
       for (std::size_t k = 0; k < b.size(); ++k) ASSERT_NEAR(one[k], plain[k], 1e-12 * (1 + std::abs(plain[k])));
     }
-}
-
-TEST(OneBlasThread, MayBeNestedAndDoesNotChangeTheName) {
-  const std::string before = blas_name();
-  {
-    const OneBlasThread outer, inner;
-    EXPECT_EQ(blas_name(), before);
-  }
-  EXPECT_FALSE(before.empty());
-  EXPECT_TRUE(blas_is_optimized("OpenBLAS 0.3.21"));
 }
 
 }  // namespace

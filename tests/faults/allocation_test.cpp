@@ -58,7 +58,7 @@ bool loses_memory(const Work& work) {
 /// @param check  called after each run
 void fail_in_turn(
     const Work& work, const Work& check = [] {}) {
-  for (int warm = 0; warm < 2; ++warm) work();  // allocates what is kept: tables, names of the BLAS
+  for (int warm = 0; warm < 2; ++warm) work();  // allocates what is kept, such as tables
   for (const bool ever_after : {false, true}) {
     long failures = 0, errors = 0;
     for (long k = 1;; ++k) {

@@ -72,7 +72,7 @@ std::function<void()> parse_command_line(int argc, const char* const* argv) {
   app->footer(main_footer);
   app->require_subcommand(1);
   bool version = false;
-  app->add_flag("--version", version, "Print the versions of ahm, its libraries and the BLAS");
+  app->add_flag("--version", version, "Print the versions of ahm and its libraries");
   std::vector<Subcommand> commands;
   for (const AddSubcommand add : subcommands()) commands.push_back(add(*app));
   if (argc == 2 && std::string_view(argv[1]) == "--version") return print_later(versions_as_text());

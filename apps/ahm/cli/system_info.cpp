@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "ahm/heat/heat_operators.hpp"
+#include "ahm/cholesky/cholesky.hpp"
 
 namespace ahm::app {
 
@@ -31,11 +31,9 @@ double processor_seconds() {
 }
 
 nlohmann::ordered_json versions() {
-  const LinearAlgebraInfo algebra = linear_algebra_info();
   nlohmann::ordered_json result;
   result["ahm"] = AHM_VERSION;
-  result["blas"] = algebra.blas;
-  result["blas_optimized"] = algebra.blas_optimized;
+  result["registers"] = register_set();
   result["eigen"] = fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION);
 #ifdef AHM_WITH_PCL
   result["pcl"] = AHM_PCL_VERSION;  // compiled in; the library is loaded when needed
@@ -51,8 +49,7 @@ std::string versions_as_text() {
   const nlohmann::ordered_json v = versions();
   const auto text = [&](const char* key) { return v.at(key).get<std::string>(); };
   std::string result =
-      fmt::format("ahm {}\nBLAS {}{}\nEigen {}\n", text("ahm"), text("blas"),
-                  v.at("blas_optimized").get<bool>() ? "" : " (reference BLAS: several times slower)", text("eigen"));
+      fmt::format("ahm {}\nregisters {}\nEigen {}\n", text("ahm"), text("registers"), text("eigen"));
   if (v.contains("pcl")) result += fmt::format("PCL {}\n", text("pcl"));
   return result;
 }

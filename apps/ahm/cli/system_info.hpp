@@ -14,7 +14,7 @@ std::int64_t peak_rss_bytes();
 /// Processor time of the process so far, over all threads, seconds.
 double processor_seconds();
 
-/// Versions of ahm, of the libraries it uses, and the BLAS in use.
+/// Versions of ahm and of the libraries it uses, and the registers of the processor that it uses.
 nlohmann::ordered_json versions();
 
 /// The output of `ahm --version`: one version per line.

@@ -77,14 +77,6 @@ const Backend& choose_backend(const io::Geometry& input, const InputOptions& opt
 
 namespace {
 
-void comment_on_blas(Journal& journal) {
-  const LinearAlgebraInfo info = linear_algebra_info();
-  if (!info.blas_optimized)
-    journal.add_warning(
-        "the BLAS is not optimized (" + info.blas +
-        "), so factorizations of large surfaces are several times slower; on Debian install libopenblas0-pthread");
-}
-
 /// `in_remaining_faces`; the messages of errors name the option.
 SourceSpec in_remaining_faces(const SourceSpec& spec, const RepairedMesh& mesh, const std::string& option) try {
   return in_remaining_faces(spec, mesh);
@@ -151,7 +143,6 @@ io::Geometry read_input(const InputOptions& options) {
 }
 
 io::Geometry read_input(const InputOptions& options, Journal& journal) {
-  comment_on_blas(journal);
   journal.start("read");
   io::Geometry input = read_input(options);
   journal.add_warnings(input.warnings);

@@ -5,11 +5,12 @@
 #ifdef AHM_WITH_CHOLMOD
 #include <cholmod.h>
 
+#include <dlfcn.h>
+
 #include <algorithm>
+#include <mutex>
 #include <string>
 #include <utility>
-
-#include "cholesky/blas.hpp"
 #endif
 
 namespace ahm {
@@ -18,6 +19,32 @@ namespace ahm {
 namespace {
 
 static_assert(sizeof(Offset) == sizeof(SuiteSparse_long), "CHOLMOD's long indices are passed without a copy");
+
+/// While any object of this class exists, OpenBLAS, if it is the BLAS, runs on one thread, so that results do not depend on the number of
+/// threads. The last destructor restores the setting of the process.
+class OneBlasThread {
+ public:
+  OneBlasThread() {
+    const std::scoped_lock lock(mutex_);
+    if (users_++ > 0 || !get_ || !set_) return;
+    threads_before_ = get_();
+    if (threads_before_ != 1) set_(1);
+  }
+  ~OneBlasThread() {
+    const std::scoped_lock lock(mutex_);
+    if (--users_ == 0 && set_ && threads_before_ > 1) set_(threads_before_);
+  }
+  OneBlasThread(const OneBlasThread&) = delete;
+  OneBlasThread& operator=(const OneBlasThread&) = delete;
+
+ private:
+  // The BLAS is selected when the process starts, so functions that only OpenBLAS has are found by name.
+  static inline int (*const get_)() = reinterpret_cast<int (*)()>(dlsym(RTLD_DEFAULT, "openblas_get_num_threads"));
+  static inline void (*const set_)(int) =
+      reinterpret_cast<void (*)(int)>(dlsym(RTLD_DEFAULT, "openblas_set_num_threads"));
+  static inline std::mutex mutex_;
+  static inline int users_ = 0, threads_before_ = 0;
+};
 
 /// The parameters, status and workspace of CHOLMOD, for one thread.
 class Common {
@@ -82,7 +109,6 @@ class CholmodSolver final : public LinearSolver {
   CholmodSolver(const SparseUpper& matrix, const char* name, CholmodFactorization factorization)
       : name_(name), xtype_(matrix.is_complex ? CHOLMOD_COMPLEX : CHOLMOD_REAL) {
     const OneBlasThread one_thread;
-    const BlasBuffer buffer;
     Common common;
     if (factorization == CholmodFactorization::simplicial) common->supernodal = CHOLMOD_SIMPLICIAL;
     cholmod_sparse K = view(matrix);
@@ -98,7 +124,6 @@ class CholmodSolver final : public LinearSolver {
 
   void solve(std::span<double> X, Offset columns, unsigned) const override {
     const OneBlasThread one_thread;
-    const BlasBuffer buffer;
     Common common;
     cholmod_dense B{};
     B.nrow = B.d = factor_->n;

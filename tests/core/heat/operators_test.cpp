@@ -109,11 +109,6 @@ TEST(HeatOperators, SupportEdgesAThousandTimesAsLongAsOthersAtLongTimes) {
     ASSERT_NEAR(length(map.coordinates(Vertex(v))), 100.0 * (v / around), 0.01 * 100 * (v / around));
 }
 
-TEST(LinearAlgebra, HasNamesOfItsLibraries) {
-  const LinearAlgebraInfo info = linear_algebra_info();
-  EXPECT_FALSE(info.blas.empty());
-}
-
 class Batch : public testing::Test {
  protected:
   Batch() {

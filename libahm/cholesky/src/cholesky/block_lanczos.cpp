@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "ahm/util/parallel.hpp"
-#include "cholesky/blas.hpp"
 #include "cholesky/tall_products.hpp"
 
 namespace ahm {
@@ -18,12 +17,20 @@ using Eigen::MatrixXd, Eigen::VectorXd;
 
 /// Largest residual |K^-1 x - mu x| / mu of an accepted eigenvector. One more block reduces it by about a factor of ten.
 constexpr double residual_tolerance = 1e-11;
-constexpr Offset rows_at_once = 4096;     ///< rows of a chunk; it stays in the cache
+constexpr Offset blocks_at_once = 64;     ///< blocks of rows per task
 constexpr Offset columns_of_panel = 128;  ///< columns of the basis in one piece of memory
 constexpr Offset b = lanczos_block;
+static_assert(b == block_columns);
 
 /// An n x b matrix, column major.
 using Block = std::vector<double>;
+
+/// Copies rows of `count` columns to a block of rows, and fills the rest of the block's columns with zeros.
+/// @param stride  from one column to the next
+void copy_rows(const double* columns, Offset stride, Offset rows, Offset count, double* block) {
+  for (Offset c = 0; c < count; ++c)
+    std::fill(std::copy_n(columns + c * stride, rows, block + c * block_stride), block + (c + 1) * block_stride, 0.0);
+}
 
 /// Orthonormal columns, in panels of memory, and products with them.
 class Basis {
@@ -35,48 +42,71 @@ class Basis {
 
   void append(const Block& Q) {
     if (size_ % panel_ == 0)
-      panels_.push_back(std::make_unique_for_overwrite<double[]>(static_cast<std::size_t>(n_ * panel_)));
-    std::copy(Q.begin(), Q.end(), panels_.back().get() + size_ % panel_ * n_);
+      panels_.push_back(std::make_unique_for_overwrite<double[]>(static_cast<std::size_t>(blocks() * panel_ * block_stride)));
     size_ += b;
+    for_each_block([&](Offset k) { copy_rows(Q.data() + k * block_rows, n_, rows(k), b, at(k, size_ - b)); });
   }
 
   /// V^T Q for the columns from `first`.
   MatrixXd coefficients(const Block& Q, Offset first = 0) const {
-    MatrixXd sum = MatrixXd::Zero(size_ - first, b);
-    const Offset chunks = (n_ + rows_at_once - 1) / rows_at_once;
-    std::vector<MatrixXd> parts(static_cast<std::size_t>(chunks));
-    detail::parallel_chunks(n_, rows_at_once, threads_, [&](Offset begin, Offset end) {
-      MatrixXd& part = parts[static_cast<std::size_t>(begin / rows_at_once)];
-      part.resize(size_ - first, b);
-      MatrixXd product;
-      for_each_panel(first, size_, [&](const double* V, Offset from, Offset columns) {
-        product.resize(columns, b);
-        transposed_product({V + begin, n_, end - begin}, columns, {Q.data() + begin, n_, end - begin}, b,
-                           product.data());
-        part.middleRows(from - first, columns) = product;
+    std::vector<Rows> parts(static_cast<std::size_t>((blocks() + blocks_at_once - 1) / blocks_at_once));
+    for_each_block([&](Offset k) {
+      Rows& part = parts[static_cast<std::size_t>(k / blocks_at_once)];
+      if (part.size() == 0) part = Rows::Zero(size_ - first, b);
+      double block[block_rows * b] = {};
+      for (Offset c = 0; c < b; ++c)
+        for (Offset r = 0; r < rows(k); ++r) block[r * b + c] = Q[static_cast<std::size_t>(c * n_ + k * block_rows + r)];
+      for_each_panel(first, size_, [&](Offset from, Offset columns) {
+        add_transposed_product(at(k, from), columns, block, part.data() + (from - first) * b);
       });
     });
-    for (const MatrixXd& part : parts) sum += part;
+    MatrixXd sum = MatrixXd::Zero(size_ - first, b);
+    for (const Rows& part : parts) sum += part;
     return sum;
   }
 
   /// X += factor V C for the columns from `first`. X is n x C.cols(), column major.
   void add_to(std::span<double> X, const MatrixXd& C, double factor, Offset first = 0) const {
-    detail::parallel_chunks(n_, rows_at_once, threads_, [&](Offset begin, Offset end) {
-      for_each_panel(first, first + C.rows(), [&](const double* V, Offset from, Offset columns) {
-        add_tall_product({V + begin, n_, end - begin}, columns, C.data() + (from - first), C.rows(), factor,
-                         X.data() + begin, n_, C.cols());
+    for (Offset c = 0; c < C.cols(); c += b) {
+      const Offset count = std::min(b, C.cols() - c);
+      Rows some = Rows::Zero(C.rows(), b);
+      some.leftCols(count) = factor * C.middleCols(c, count);
+      for_each_block([&](Offset k) {
+        double* const own = X.data() + c * n_ + k * block_rows;
+        double block[b * block_stride] = {};
+        copy_rows(own, n_, rows(k), count, block);
+        for_each_panel(first, first + C.rows(), [&](Offset from, Offset columns) {
+          add_product(at(k, from), columns, some.data() + (from - first) * b, block);
+        });
+        for (Offset a = 0; a < count; ++a) std::copy_n(block + a * block_stride, rows(k), own + a * n_);
       });
-    });
+    }
   }
 
  private:
-  /// Calls body(memory, first column, number of columns) for the columns in [first, last), panel by panel.
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, b, Eigen::RowMajor>;
+
+  Offset blocks() const { return (n_ + block_rows - 1) / block_rows; }
+  Offset rows(Offset block) const { return std::min(block_rows, n_ - block * block_rows); }
+  /// A column in a block of rows. The next columns of the panel follow.
+  double* at(Offset block, Offset column) const {
+    return panels_[static_cast<std::size_t>(column / panel_)].get() + (block * panel_ + column % panel_) * block_stride;
+  }
+
+  /// Calls body(block) for every block of rows, on several threads.
+  template <class Body>
+  void for_each_block(const Body& body) const {
+    detail::parallel_chunks(blocks(), blocks_at_once, threads_, [&](Offset begin, Offset end) {
+      for (Offset k = begin; k < end; ++k) body(k);
+    });
+  }
+
+  /// Calls body(first column, number of columns) for the columns in [first, last), panel by panel.
   template <class Body>
   void for_each_panel(Offset first, Offset last, const Body& body) const {
     for (Offset column = first; column < last;) {
-      const Offset inside = column % panel_, count = std::min(panel_ - inside, last - column);
-      body(panels_[static_cast<std::size_t>(column / panel_)].get() + inside * n_, column, count);
+      const Offset count = std::min(panel_ - column % panel_, last - column);
+      body(column, count);
       column += count;
     }
   }
@@ -202,7 +232,6 @@ class BlockLanczos {
 
 std::optional<Eigenpairs> largest_inverse_eigenpairs(const LinearSolver& solver, Offset n, Offset count,
                                                      unsigned threads, const Progress& progress) {
-  const OneBlasThread one_thread;
   if (n < 2 * b) return std::nullopt;
   BlockLanczos lanczos(solver, n, threads);
   // Surfaces need about 3.5 count + 50 columns.

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "ahm/error.hpp"
-#include "cholesky/blas.hpp"
 #include "cholesky/multifrontal.hpp"
 #include "cholesky/ordering.hpp"
+#include "cholesky/registers.hpp"
 #include "cholesky/supernodal_pattern.hpp"
 #include "cholesky/triangular_solve.hpp"
 
@@ -45,7 +45,6 @@ double SymbolicCholesky::operations() const noexcept { return pattern_->operatio
 CholeskyFactor::CholeskyFactor(const SparseUpper& matrix, const SymbolicCholesky& symbolic, const char* name,
                                unsigned threads)
     : pattern_(symbolic.pattern_), is_complex_(matrix.is_complex) {
-  const OneBlasThread one_thread;
   auto values = std::make_unique_for_overwrite<double[]>(static_cast<std::size_t>(nonzeros()) * (is_complex_ ? 2 : 1));
   const Offset good = factor_by_fronts(matrix, *pattern_, *symbolic.entries_, values.get(), threads);
   values_ = std::move(values);
@@ -63,9 +62,16 @@ void CholeskyFactor::solve(std::span<double> X, Offset columns, unsigned threads
   block_solve(factor(), X, columns);
 }
 
-LinearAlgebraInfo linear_algebra_info() {
-  const std::string blas = blas_name();
-  return {blas, blas_is_optimized(blas)};
+std::string register_set() {
+  switch (widest_registers()) {
+    case Registers::avx512:
+      return "AVX-512";
+    case Registers::avx2:
+      return "AVX2";
+    case Registers::plain:
+      break;
+  }
+  return "plain";
 }
 
 SupernodalFactor CholeskyFactor::factor() const { return pattern_->factor(is_complex_, values_.get()); }

@@ -5,24 +5,27 @@
 
 #include <cmath>
 
-#include "cholesky/supernode_kernels.hpp"
+#include "ahm/types.hpp"
+#include "cholesky/registers.hpp"
 
 namespace ahm {
 
 /// Doubles per tile column: two vectors of four.
 inline constexpr Offset tile_rows = 8;
 
-/// Computes sum_k L_rk conj(L_ck) for a tile of R * 4 / W rows r and J columns c.
-template <int W, int R, int J>
+/// Computes sum_k L_rk conj(L_ck) for a tile of R * N / W rows r and J columns c, in registers of N doubles.
+template <int W, int N, int R, int J>
 struct Tile {
-  Four straight[J][R] = {}, crossed[(J - 1) * (W - 1) + 1][(R - 1) * (W - 1) + 1] = {};  // crossed: unused if W is 1
+  using Vector = typename Lanes<N>::Type;
+  Vector straight[J][R] = {}, crossed[(J - 1) * (W - 1) + 1][(R - 1) * (W - 1) + 1] = {};  // crossed: unused if W is 1
 
   /// @param row, column  entries of the first column of L in the tile's first row r and first column c
-  /// @param stride       doubles from one column of L to the next
-  [[gnu::always_inline]] Tile(const double* row, const double* column, Offset stride, Offset count) {
-    for (Offset k = 0; k < count; ++k, row += stride, column += stride) {
-      const Four* left = four(row);
-#pragma GCC unroll 4
+  /// @param row_stride, column_stride  doubles from one column of L to the next, for each of both
+  [[gnu::always_inline]] Tile(const double* row, Offset row_stride, const double* column, Offset column_stride,
+                              Offset count) {
+    for (Offset k = 0; k < count; ++k, row += row_stride, column += column_stride) {
+      const Vector* left = reinterpret_cast<const Vector*>(row);
+#pragma GCC unroll 8
       for (int c = 0; c < J; ++c)
 #pragma GCC unroll 2
         for (int r = 0; r < R; ++r) {
@@ -31,10 +34,15 @@ struct Tile {
         }
     }
   }
-  [[gnu::always_inline]] void get(int column, int r, Four* sum) const {
+  [[gnu::always_inline]] void get(int column, int r, Vector* sum) const {
     *sum = straight[column][r];
-    if constexpr (W == 2)
-      *sum += Four{1, -1, 1, -1} * __builtin_shufflevector(crossed[column][r], crossed[column][r], 1, 0, 3, 2);
+    if constexpr (W == 2) {
+      const Vector& other = crossed[column][r];
+      if constexpr (N == 4)
+        *sum += Vector{1, -1, 1, -1} * __builtin_shufflevector(other, other, 1, 0, 3, 2);
+      else
+        *sum += Vector{1, -1, 1, -1, 1, -1, 1, -1} * __builtin_shufflevector(other, other, 1, 0, 3, 2, 5, 4, 7, 6);
+    }
   }
 };
 
@@ -62,7 +70,7 @@ struct ColumnBlock {
   /// @param skipped  leading doubles of the tile that are not written
   template <int R>
   [[gnu::always_inline]] void tile(Offset diagonal, Offset r, Offset skipped = 0) const {
-    const Tile<W, R, J> tile(L + r, L + diagonal, stride, eliminated);
+    const Tile<W, 4, R, J> tile(L + r, stride, L + diagonal, stride, eliminated);
 #pragma GCC unroll 4
     for (int c = 0; c < J; ++c)
 #pragma GCC unroll 2

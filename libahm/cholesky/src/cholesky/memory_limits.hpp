@@ -20,8 +20,8 @@ double resource_limit();
 /// The part of `resource_limit` that the process has not mapped yet, in bytes; infinity if there is no limit.
 double address_space_left();
 
-/// Address space of each thread of a solve, without its arrays: a stack, an arena of the allocator, a BLAS buffer. Bytes.
-inline constexpr double bytes_per_thread = 208e6;
+/// Address space of each thread of a solve, without its arrays: a stack and an arena of the allocator. Bytes.
+inline constexpr double bytes_per_thread = 80e6;
 
 /// Whether an allocation may fail before memory is used up: because of a `resource_limit`, or because the system does not overcommit
 /// memory (vm.overcommit_memory = 2).

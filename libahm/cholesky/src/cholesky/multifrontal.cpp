@@ -37,28 +37,13 @@ template <int W>
   return columns;
 }
 
-#ifdef __x86_64__
-template <int W>
-[[gnu::target("avx2,fma")]] Offset factor_small_avx2(double* L, Offset rows, Offset columns, double* update) {
-  return factor_small<W>(L, rows, columns, update);
-}
-#endif
-template <int W>
-Offset factor_small_anywhere(double* L, Offset rows, Offset columns, double* update) {
-  return factor_small<W>(L, rows, columns, update);
-}
-
 }  // namespace
 
 template <int W>
 Offset factor_front(double* L, Offset rows, Offset columns, double* update, unsigned threads) {
   const FlushSubnormals flush;
   if (is_large_front(rows, columns)) return factor_large_front<W>(L, rows, columns, update, threads);
-#ifdef __x86_64__
-  static const bool fast = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-  if (fast) return factor_small_avx2<W>(L, rows * W, columns, update);
-#endif
-  return factor_small_anywhere<W>(L, rows * W, columns, update);
+  return in_widest_registers([&](auto) { return factor_small<W>(L, rows * W, columns, update); });
 }
 
 template Offset factor_front<1>(double*, Offset, Offset, double*, unsigned);

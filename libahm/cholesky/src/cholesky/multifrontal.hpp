@@ -13,12 +13,12 @@ constexpr bool is_large_front(Offset rows, Offset columns) { return rows * rows 
 /// Factors the columns of a supernode in place, L <- chol(L), and computes its update matrix, update <- -L_below L_below^H. The first
 /// `columns` rows of L are the supernode's own rows, the others are L_below. Real (W = 1) or complex (W = 2).
 ///
-/// Large fronts are factored by `factor_large_front`. In small fronts its copies, and the calls of a BLAS, would cost more than they save.
+/// Large fronts are factored by `factor_large_front`. In small fronts its copies would cost more than they save.
 /// @param L       rows x columns, column major; its upper triangle is left undefined
 /// @param update  (rows - columns)^2, column major; only the lower triangle is defined
 /// @param threads  threads that share a large front; the result has the same bits for any number
 /// @return number of columns before the first pivot that is not positive and finite; `columns` if there is none
-/// @throws ResourceExhausted (as `BlasBuffer`; this thread must not hold one)
+/// @throws std::bad_alloc
 template <int W>
 Offset factor_front(double* L, Offset rows, Offset columns, double* update, unsigned threads = 1);
 

@@ -2,16 +2,10 @@
 /// Vectorized kernels of the triangular solves, with four doubles per vector.
 #pragma once
 
+#include "cholesky/registers.hpp"
 #include "cholesky/supernodal_pattern.hpp"
 
 namespace ahm {
-
-/// Four real or two complex numbers at any address. Pass them by pointer only: compilers assume that references are aligned, and that
-/// the processor has registers for parameters passed by value.
-using Four [[gnu::vector_size(4 * sizeof(double)), gnu::aligned(alignof(double)), gnu::may_alias]] = double;
-
-[[gnu::always_inline]] inline const Four* four(const double* numbers) { return reinterpret_cast<const Four*>(numbers); }
-[[gnu::always_inline]] inline Four* four(double* numbers) { return reinterpret_cast<Four*>(numbers); }
 
 /// Both kernels take K vectors of s.rows numbers, stored one after another: the supernode's own rows first, then the rows below.
 /// Complex numbers (W = 2) are interleaved pairs. The results have the same bits with and without AVX2.

@@ -1,24 +1,27 @@
 /// \file
-/// Products of tall matrices (n rows, a few columns), column major. Sums run over chunks of rows that do not depend on the number of
-/// threads. The build has one of two files: tall_products_blas.cpp, or tall_products.cpp by Eigen (AHM_WITH_BLAS).
+/// Products of tall matrices (n rows, a few columns). A tall matrix is stored in blocks of rows, one after another.
 #pragma once
+
+#include <span>
 
 #include "ahm/types.hpp"
 
 namespace ahm {
 
-/// A chunk of rows of a tall matrix.
-struct TallChunk {
-  const double* values;  ///< first row of the chunk in column 0
-  Offset stride;         ///< numbers from one column to the next
-  Offset rows;
-};
+inline constexpr Offset block_columns = 16;  ///< columns of the matrices B, C and X below
+inline constexpr Offset block_rows = 64;
+inline constexpr Offset block_stride = 72;  ///< from one column to the next: an odd number of cache lines, so that columns use all sets
 
-/// C = A^T B, of `a` and `b` columns.
-void transposed_product(const TallChunk& A, Offset a, const TallChunk& B, Offset b, double* C);
+/// C += A^T B for a block of rows.
+/// @param A  `columns` columns, a multiple of 8, with `block_stride`
+/// @param B  block_rows x block_columns, row major
+/// @param C  columns x block_columns, row major
+void add_transposed_product(const double* A, Offset columns, const double* B, double* C);
 
-/// B += factor A C, of `a` and `b` columns; C is a x b with `stride_C` numbers from one column to the next.
-void add_tall_product(const TallChunk& A, Offset a, const double* C, Offset stride_C, double factor, double* B,
-                      Offset stride_B, Offset b);
+/// X += A C for a block of rows.
+/// @param A  `columns` columns with `block_stride`
+/// @param C  columns x block_columns, row major
+/// @param X  block_columns columns with `block_stride`
+void add_product(const double* A, Offset columns, const double* C, double* X);
 
 }  // namespace ahm

@@ -183,12 +183,6 @@ namespace {
 /// Doubles per row of a block: 16 real columns, or the real parts and then the imaginary parts of 8 complex columns.
 constexpr int width = 16;
 
-/// A SIMD vector of N doubles.
-template <int N>
-struct Lanes {
-  using Type [[gnu::vector_size(N * sizeof(double)), gnu::aligned(alignof(double)), gnu::may_alias]] = double;
-};
-
 /// A sum of rows times entries of the factor, real (W = 1) or complex (W = 2), in registers of N doubles.
 template <int W, int N>
 struct RowSum {

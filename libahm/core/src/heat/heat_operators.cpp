@@ -7,7 +7,6 @@
 #include "ahm/graph/components.hpp"
 #include "ahm/util/memory.hpp"
 #include "ahm/util/text.hpp"
-#include "cholesky/blas.hpp"
 #include "heat/component_scales.hpp"
 #include "heat/heat_system.hpp"
 

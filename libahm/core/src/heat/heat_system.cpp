@@ -13,7 +13,6 @@
 #include "ahm/util/parallel.hpp"
 #include "ahm/util/stopwatch.hpp"
 #include "ahm/util/text.hpp"
-#include "cholesky/blas.hpp"
 #include "heat/component_scales.hpp"
 
 namespace ahm {

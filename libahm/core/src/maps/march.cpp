@@ -7,7 +7,6 @@
 #include "ahm/util/parallel.hpp"
 #include "ahm/util/shortest_paths.hpp"
 #include "ahm/util/small_math.hpp"
-#include "cholesky/blas.hpp"
 #include "graph/patch.hpp"
 
 namespace ahm {
@@ -129,7 +128,6 @@ struct March::Solve {
 };
 
 void March::march(const Source* source) {
-  OneBlasThread one_thread;
   std::unique_ptr<Solve> last;  // accepted by its heat; its other values are not yet computed
   while (last || source || team_.sum(static_cast<std::int64_t>(front_.size())) > 0) {
     progress_.step("solve", static_cast<double>(accepted_count_) / graph_.size());

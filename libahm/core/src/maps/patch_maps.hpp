@@ -19,7 +19,6 @@
 #include "ahm/util/parallel.hpp"
 #include "ahm/util/shortest_paths.hpp"
 #include "ahm/util/small_math.hpp"
-#include "cholesky/blas.hpp"
 #include "heat/component_scales.hpp"
 #include "heat/heat_system.hpp"
 #include "maps/affine_heat.hpp"
@@ -142,7 +141,6 @@ template <class Make, class Work>
 void share_groups(const std::vector<std::vector<Index>>& groups, unsigned threads, const Progress& progress,
                   const Make& make, const Work& work) {
   using Worker = decltype(make());
-  const OneBlasThread one_thread;
   detail::Mutex mutex;
   std::vector<Worker> idle;
   Offset done = 0;

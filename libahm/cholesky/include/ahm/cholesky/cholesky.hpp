@@ -86,11 +86,7 @@ class CholeskyFactor final : public LinearSolver {
   std::unique_ptr<const double[]> values_;
 };
 
-/// The BLAS in use, for reports.
-struct LinearAlgebraInfo {
-  std::string blas;     ///< e.g. "OpenBLAS 0.3.21 ...", the file name of the library, or "none (...)"
-  bool blas_optimized;  ///< false for the reference BLAS, which is several times slower
-};
-LinearAlgebraInfo linear_algebra_info();
+/// The registers of this processor that factorizations use, for reports: "AVX-512", "AVX2" or "plain".
+std::string register_set();
 
 }  // namespace ahm

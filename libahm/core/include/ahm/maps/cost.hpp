@@ -22,7 +22,7 @@ struct GraphSize {
   TransportKind kind = TransportKind::rotation2;
 };
 
-/// Peak memory without the graph itself, and processor time on a machine of 3 GHz with an optimized BLAS.
+/// Peak memory without the graph itself, and processor time on a machine of 3 GHz.
 struct Cost {
   double bytes = 0;
   double first_map_seconds = 0;  ///< including the factorization
