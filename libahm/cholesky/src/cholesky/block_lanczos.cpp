@@ -129,7 +129,7 @@ class BlockLanczos {
   /// Multiplies the last block by K^-1 and appends the part that is orthogonal to the basis.
   void step() {
     Block W = std::move(Q_);
-    solver_.solve(W, b);
+    solver_.solve(W, b, threads_);
     const Offset last = V_.size() - b;
     if (last > 0) V_.add_to(W, coupling_.transpose(), -1, last - b);
     const MatrixXd A = V_.coefficients(W, last);

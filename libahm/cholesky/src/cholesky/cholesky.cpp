@@ -59,7 +59,7 @@ void CholeskyFactor::check_pivots(Offset good, const char* name) const {
 
 void CholeskyFactor::solve(std::span<double> X, Offset columns, unsigned threads) const {
   if (columns <= max_narrow_columns) return narrow_solve(factor(), X, columns, pattern_->groups.get(), threads);
-  block_solve(factor(), X, columns);
+  block_solve(factor(), X, columns, pattern_->groups.get(), threads);
 }
 
 std::string register_set() {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "ahm/util/parallel.hpp"
+#include "cholesky/registers.hpp"
 #include "cholesky/supernode_kernels.hpp"
 
 namespace ahm {
@@ -215,20 +216,24 @@ struct RowSum {
   }
 };
 
-template <int W, int N>
+/// Solves for up to 16 / W columns, real (W = 1) or complex (W = 2).
+template <int W>
 class BlockSolve {
  public:
   static constexpr Offset columns_at_once = width / W;
 
-  explicit BlockSolve(const SupernodalFactor& L) : L_(L), x_(static_cast<std::size_t>(L.size) * width) {}
+  BlockSolve(const SupernodalFactor& L, const SolveGroups* groups, unsigned threads)
+      : L_(L), groups_(groups), threads_(groups ? threads : 1), x_(static_cast<std::size_t>(L.size) * width) {}
 
-  /// Solves for up to `columns_at_once` columns.
   void solve(std::span<double> X, Offset columns) {
     if (columns < columns_at_once) std::fill(x_.begin(), x_.end(), 0.0);
     permute<true>(X, columns);
-    const auto supernodes = static_cast<Offset>(L_.super.size()) - 1;
-    for (Offset s = 0; s < supernodes; ++s) forward(Supernode<W>(L_, s));
-    for (Offset s = supernodes; s-- > 0;) backward(Supernode<W>(L_, s));
+    if (groups_) {
+      solve_by_groups();
+    } else {
+      forward(0, L_.supernodes(), [this](Offset k) { return row(k); });
+      backward(0, L_.supernodes());
+    }
     permute<false>(X, columns);
   }
 
@@ -237,22 +242,69 @@ class BlockSolve {
 
   template <bool In>
   void permute(std::span<double> X, Offset columns) {
-    for (Offset k = 0; k < L_.size; ++k)
-      for (Offset c = 0; c < columns; ++c)
-        for (int w = 0; w < W; ++w) {
-          double& outside = X[(c * L_.size + L_.permutation[k]) * W + w];
-          double& inside = row(k)[w * columns_at_once + c];
-          In ? inside = outside : outside = inside;
-        }
+    detail::parallel_chunks(L_.size, 1 << 13, threads_, [&](Offset begin, Offset end) {
+      for (Offset k = begin; k < end; ++k)
+        for (Offset c = 0; c < columns; ++c)
+          for (int w = 0; w < W; ++w) {
+            double& outside = X[(c * L_.size + L_.permutation[k]) * W + w];
+            double& inside = row(k)[w * columns_at_once + c];
+            In ? inside = outside : outside = inside;
+          }
+    });
   }
 
-  static void divide(double* x, double pivot) {
+  void solve_by_groups() {
+    const auto for_each_group = [&](const auto& body) {
+      detail::parallel_chunks(groups_->count(), 1, threads_, [&](Offset group, Offset) {
+        body(group, std::span(groups_->subtrees)
+                        .subspan(groups_->begin[group], groups_->begin[group + 1] - groups_->begin[group]));
+      });
+    };
+    std::vector<std::vector<double>> top_sums(static_cast<std::size_t>(groups_->count()));
+    for_each_group([&](Offset group, const auto& subtrees) {
+      std::vector<double>& sums = top_sums[group];
+      sums.resize(groups_->top_rows * width);
+      for (const auto& [first, last, end] : subtrees)
+        forward(first, last, [&, own_end = end](Offset k) {
+          return k < own_end ? row(k) : sums.data() + groups_->place[k] * width;
+        });
+    });
+    Offset place = 0;
+    for (const Offset s : groups_->top) {
+      for (Offset k = L_.super[s]; k < L_.super[s + 1]; ++k, ++place)
+        for (const std::vector<double>& sums : top_sums)
+          for (Offset c = 0; c < width; ++c) row(k)[c] += sums[place * width + c];
+      forward(s, s + 1, [this](Offset k) { return row(k); });
+    }
+    for (auto s = groups_->top.rbegin(); s != groups_->top.rend(); ++s) backward(*s, *s + 1);
+    for_each_group([&](Offset, const auto& subtrees) {
+      for (auto tree = subtrees.rbegin(); tree != subtrees.rend(); ++tree) backward(tree->first, tree->last);
+    });
+  }
+
+  /// Solves L y = x for the rows of the supernodes first to last - 1.
+  /// @param target  target(row): where to add the contribution to a row below a supernode
+  template <class Target>
+  void forward(Offset first, Offset last, const Target& target) {
+    in_widest_registers([&](auto N) {
+      for (Offset s = first; s < last; ++s) forward_one<N()>(Supernode<W>(L_, s), target);
+    });
+  }
+
+  /// Solves L^H x = y for the rows of the supernodes first to last - 1.
+  void backward(Offset first, Offset last) {
+    in_widest_registers([&](auto N) {
+      for (Offset s = last; s-- > first;) backward_one<N()>(Supernode<W>(L_, s));
+    });
+  }
+
+  [[gnu::always_inline]] static void divide(double* x, double pivot) {
 #pragma omp simd
     for (int c = 0; c < width; ++c) x[c] /= pivot;
   }
 
-  /// Solves L y = x for the rows of a supernode.
-  void forward(const Supernode<W>& s) {
+  template <int N, class Target>
+  [[gnu::always_inline]] void forward_one(const Supernode<W>& s, const Target& target) {
     double* own = row(s.first);
     // See `PermutedColumns::is_zero`.
     if (std::all_of(own, own + s.columns * width, [](double value) { return value == 0; })) return;
@@ -265,12 +317,12 @@ class BlockSolve {
     for (Offset r = s.columns; r < s.rows; ++r) {
       RowSum<W, N> sum;
       for (Offset j = 0; j < s.columns; ++j) sum.add(s.at(r, j), own + j * width);
-      sum.subtract_from(row(s.index[r]));
+      sum.subtract_from(target(s.index[r]));
     }
   }
 
-  /// Solves L^H x = y for the rows of a supernode.
-  void backward(const Supernode<W>& s) {
+  template <int N>
+  [[gnu::always_inline]] void backward_one(const Supernode<W>& s) {
     double* own = row(s.first);
     for (Offset j = s.columns; j-- > 0;) {
       RowSum<W, N> sum;
@@ -282,12 +334,15 @@ class BlockSolve {
   }
 
   const SupernodalFactor& L_;
+  const SolveGroups* groups_;
+  unsigned threads_;
   std::vector<double> x_;
 };
 
-template <int W, int N>
-void solve_by_blocks(const SupernodalFactor& L, std::span<double> X, Offset columns) {
-  BlockSolve<W, N> block(L);
+template <int W>
+void solve_by_blocks(const SupernodalFactor& L, std::span<double> X, Offset columns, const SolveGroups* groups,
+                     unsigned threads) {
+  BlockSolve<W> block(L, groups, threads);
   const Offset column_size = L.size * W;
   for (Offset c = 0; c < columns; c += block.columns_at_once) {
     const Offset count = std::min(block.columns_at_once, columns - c);
@@ -295,26 +350,11 @@ void solve_by_blocks(const SupernodalFactor& L, std::span<double> X, Offset colu
   }
 }
 
-template <int N>
-void solve_by_lanes(const SupernodalFactor& L, std::span<double> X, Offset columns) {
-  L.is_complex ? solve_by_blocks<2, N>(L, X, columns) : solve_by_blocks<1, N>(L, X, columns);
-}
-
-#ifdef __x86_64__
-/// Uses vectors of four doubles. The results have the same bits as with vectors of two.
-[[gnu::target("avx2"), gnu::flatten]] void solve_by_fours(const SupernodalFactor& L, std::span<double> X,
-                                                          Offset columns) {
-  solve_by_lanes<4>(L, X, columns);
-}
-#endif
-
 }  // namespace
 
-void block_solve(const SupernodalFactor& L, std::span<double> X, Offset columns) {
-#ifdef __x86_64__
-  if (__builtin_cpu_supports("avx2")) return solve_by_fours(L, X, columns);
-#endif
-  solve_by_lanes<2>(L, X, columns);
+void block_solve(const SupernodalFactor& L, std::span<double> X, Offset columns, const SolveGroups* groups,
+                 unsigned threads) {
+  (L.is_complex ? solve_by_blocks<2> : solve_by_blocks<1>)(L, X, columns, groups, threads);
 }
 
 }  // namespace ahm

@@ -1,8 +1,7 @@
 /// \file
 /// Triangular solves with a supernodal factor.
 ///
-/// The factors of libahm have a small supernode for every few vertices. Calls of the BLAS for each supernode cost more than reading the
-/// factor, so all solves have loops of our own.
+/// The factors of libahm have a small supernode for every few vertices. Loops over one supernode must cost little more than reading it.
 #pragma once
 
 #include <span>
@@ -22,6 +21,8 @@ void narrow_solve(const SupernodalFactor& L, std::span<double> X, Offset columns
 
 /// X <- K^-1 X for any number of columns, column major; complex vectors as interleaved pairs. The result for a column does not depend
 /// on the other columns. Skips supernodes whose rows are zero in the forward solve.
-void block_solve(const SupernodalFactor& L, std::span<double> X, Offset columns);
+/// @param groups  as in `narrow_solve`
+void block_solve(const SupernodalFactor& L, std::span<double> X, Offset columns, const SolveGroups* groups = nullptr,
+                 unsigned threads = 1);
 
 }  // namespace ahm
