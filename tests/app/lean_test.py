@@ -83,7 +83,7 @@ class LeanProgram(unittest.TestCase):
         write_mesh(file, 72)
         for method in ("polar", "heat", "exact"):
             rows = self.expect_equal_maps(file, 5000, method)
-            # The poles are opposite: the meridian ellipse is at least as long as the straight lines between its points.
+            # Both poles together: at least as far as from pole to pole, at most half of a circle of radius 1.2.
             self.assertGreater(rows[0]["distance"] + rows[-1]["distance"], 2.4, method)
             self.assertLess(rows[0]["distance"] + rows[-1]["distance"], math.pi * 1.2, method)
 

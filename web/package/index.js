@@ -132,6 +132,13 @@ function checkChoice(value, choices, name) {
   return value;
 }
 
+/** Options of meshes as arguments of the module: whether to split, and the distance of merged vertices (-1: none). */
+function meshOptions({nonManifold = 'error', weld = null} = {}) {
+  checkChoice(nonManifold, ['error', 'split'], 'nonManifold');
+  if (weld !== null && !(weld >= 0)) throw new InvalidArgument(`weld is ${weld}; expected a distance of 0 or more`);
+  return [nonManifold === 'split' ? 1 : 0, weld ?? -1];
+}
+
 export class Surface {
   #handle;
 
@@ -233,23 +240,23 @@ export class Library {
     return this.#module.text(this.#module.exports.ahm_version());
   }
 
-  triangleMesh(positions, triangles, {nonManifold = 'error'} = {}) {
-    const split = checkChoice(nonManifold, ['error', 'split'], 'nonManifold') === 'split' ? 1 : 0;
+  triangleMesh(positions, triangles, options) {
+    const [split, weld] = meshOptions(options);
     const points = flat(positions, 3, Float64Array, 'positions');
     const corners = flat(triangles, 3, Int32Array, 'triangles');
     return this.#surface([points, corners], (p, c) =>
-      this.#module.exports.ahm_triangle_mesh(p, points.length / 3, c, corners.length / 3, split),
+      this.#module.exports.ahm_triangle_mesh(p, points.length / 3, c, corners.length / 3, split, weld),
     );
   }
 
-  polygonMesh(positions, faces, {nonManifold = 'error'} = {}) {
-    const split = checkChoice(nonManifold, ['error', 'split'], 'nonManifold') === 'split' ? 1 : 0;
+  polygonMesh(positions, faces, options) {
+    const [split, weld] = meshOptions(options);
     const points = flat(positions, 3, Float64Array, 'positions');
     const begin = [0];
     for (const face of faces) begin.push(begin.at(-1) + face.length);
     const corners = flat(faces.flatMap((face) => Array.from(face)), 1, Int32Array, 'faces');
     return this.#surface([points, Int32Array.from(begin), corners], (p, b, c) =>
-      this.#module.exports.ahm_polygon_mesh(p, points.length / 3, b, faces.length, c, split),
+      this.#module.exports.ahm_polygon_mesh(p, points.length / 3, b, faces.length, c, split, weld),
     );
   }
 

@@ -2,7 +2,8 @@
 
 const element = (id) => document.getElementById(id);
 const cancelled = () => new DOMException('cancelled', 'AbortError');
-const wasm = WebAssembly.compileStreaming(fetch('ahm.wasm'));
+// Not by compileStreaming, which refuses the file if the server does not know the type of .wasm files.
+const wasm = fetch('ahm.wasm').then((answer) => answer.arrayBuffer()).then((bytes) => WebAssembly.compile(bytes));
 
 /** Requests to a session in a worker, one after the other. `fetch` has the arguments and the result of window.fetch. */
 class WorkerTransport {
@@ -95,15 +96,17 @@ function say(text, isError = false) {
   element('say').classList.toggle('error', isError);
 }
 
-/** Opens the first file; the others may be images or buffers that it refers to. */
-async function open(files) {
+/** Opens the first file that is not an image or a buffer; the others may be images and buffers that it refers to. */
+async function open(list) {
+  const files = [...list], at = files.findIndex((file) => !/\.(bin|mtl|png|jpe?g)$/i.test(file.name));
   if (files.length === 0) return;
+  if (at > 0) files.unshift(...files.splice(at, 1));
   element('viewer')?.remove();
   element('start').hidden = true;
   say(`reading ${files[0].name} …`);
   transport.progress = (stage, fraction) => say(`${stage} ${fraction > 0 ? Math.round(100 * fraction) + ' %' : '…'}`);
   try {
-    const answer = await transport.open([...files]), {error, warnings} = await answer.json();
+    const answer = await transport.open(files), {error, warnings} = await answer.json();
     if (!answer.ok) throw new Error(error);
     say(warnings.join('; '));
     const page = Object.assign(document.createElement('iframe'), {id: 'viewer', src: 'view.html', title: 'viewer'});
