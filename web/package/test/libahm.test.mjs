@@ -142,6 +142,7 @@ test('errors are of the class of the library, with its message', () => {
   refused(() => solver.logMap(0, {radius: -1}), libahm.InvalidArgument, /radius/);
   refused(() => ahm.triangleMesh(positions, [[0, 1, 99]]), libahm.InvalidGeometry, /99/);
   refused(() => ahm.triangleMesh(positions, [[0, 1]]), libahm.InvalidArgument, /triangles/);
+  refused(() => ahm.polygonMesh(positions, [0, 1, 2]), libahm.InvalidArgument, /faces: entry 0/);
   refused(() => ahm.pointCloud([[0, 0, 0], [1, 0, 0]]), libahm.InvalidGeometry, /point/);
   refused(() => ahm.solver(mesh, {method: 'best'}), libahm.InvalidArgument, /method/);
   refused(() => ahm.solver(ahm.pointCloud(positions), {method: 'exact'}).logMap(0), libahm.InvalidArgument, /./);
@@ -162,6 +163,20 @@ test('freed memory is used again', () => {
   const before = process.memoryUsage().arrayBuffers;
   for (let k = 0; k < 30; ++k) once();
   assert.ok(process.memoryUsage().arrayBuffers - before < 100e6);
+});
+
+test('memory above 2 GiB is used', async () => {
+  const {instantiate} = WebAssembly;
+  WebAssembly.instantiate = async (...sources) => {
+    const instance = await instantiate(...sources);
+    instance.exports.memory.grow(33000);  // 2.01 GiB, before all memory that the module allocates
+    return instance;
+  };
+  const high = await libahm.load().finally(() => (WebAssembly.instantiate = instantiate));
+  const {positions, triangles} = square(101);
+  const map = high.solver(high.triangleMesh(positions, triangles)).logMap(0, {uAxis: [1, 0, 0]});
+  near(map.u.at(-1), 1, 1e-9, 'u of the opposite corner');
+  assert.throws(() => high.triangleMesh(positions, [[0, 1, 99999]]), /99999/);
 });
 
 test('maps are those of the native program', {skip: !process.env.AHM_PROGRAM && 'AHM_PROGRAM is not set'}, () => {
