@@ -98,7 +98,9 @@ function say(text, isError = false) {
 
 /** Opens the first file that is not an image or a buffer; the others may be images and buffers that it refers to. */
 async function open(list) {
-  const files = [...list], at = files.findIndex((file) => !/\.(bin|mtl|png|jpe?g)$/i.test(file.name));
+  // Files of this window: those that are dropped on the viewer cannot be read after its frame is removed.
+  const files = Array.from(list, (file) => new File([file], file.name));
+  const at = files.findIndex((file) => !/\.(bin|mtl|png|jpe?g)$/i.test(file.name));
   if (files.length === 0) return;
   if (at > 0) files.unshift(...files.splice(at, 1));
   element('viewer')?.remove();
