@@ -139,7 +139,7 @@ function checkChoice(value, choices, name) {
 /** Options of meshes as arguments of the module: whether to split, and the distance of merged vertices (-1: none). */
 function meshOptions({nonManifold = 'error', weld = null} = {}) {
   checkChoice(nonManifold, ['error', 'split'], 'nonManifold');
-  if (weld !== null && !(weld >= 0)) throw new InvalidArgument(`weld is ${weld}; expected a distance of 0 or more`);
+  if (weld !== null && !(typeof weld === 'number' && weld >= 0)) throw new InvalidArgument(`weld is ${weld}; expected a distance of 0 or more`);
   return [nonManifold === 'split' ? 1 : 0, weld ?? -1];
 }
 
@@ -191,6 +191,7 @@ export class Solver {
   distance(sources, {radius = Infinity} = {}) {
     const {module} = this.#handle;
     const list = Array.isArray(sources) ? sources : [sources];
+    if (list.length === 0) throw new InvalidArgument('sources: empty; expected a place or an array of places');
     return module.withArrays([places(list)], (pointer) =>
       module.columns(module.exports.ahm_distance(this.#handle.get(), pointer, list.length, radius), (column) => column(0)),
     );
