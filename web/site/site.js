@@ -85,8 +85,13 @@ const nameOf = (file) => file.name.replace(/\.gz$/i, '');
 
 /** Name and bytes of a file, unpacked if it is compressed. */
 async function contents(file) {
-  const stream = file.name === nameOf(file) ? file : new Response(file.stream().pipeThrough(new DecompressionStream('gzip')));
-  return [nameOf(file), new Uint8Array(await stream.arrayBuffer())];
+  const isPacked = file.name !== nameOf(file);
+  try {
+    const stream = isPacked ? new Response(file.stream().pipeThrough(new DecompressionStream('gzip'))) : file;
+    return [nameOf(file), new Uint8Array(await stream.arrayBuffer())];
+  } catch (error) {
+    throw new Error(`cannot read '${file.name}': ${isPacked ? 'it is damaged, not compressed with gzip, or too large' : error.message}`);
+  }
 }
 
 const transport = window.ahm = new WorkerTransport();

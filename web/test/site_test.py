@@ -175,6 +175,12 @@ class Site(unittest.TestCase):
             self.assertEqual(browser.js("return document.getElementById('heading').textContent"), title)
             self.assertIn("2,000 points", browser.js("return document.getElementById('about').textContent"))
         browser.driver.save_screenshot(str(browser.work / "cloud.png"))
+        plain = browser.work / "plain.xyz.gz"
+        plain.write_bytes(cloud.read_bytes())
+        browser.open_file(plain)
+        browser.wait("document.getElementById('say').classList.contains('error')")
+        self.assertEqual(browser.js("return document.getElementById('say').textContent"),
+                         "cannot read 'plain.xyz.gz': it is damaged, not compressed with gzip, or too large")
         broken = browser.work / "broken.off"
         broken.write_text("OFF\n3 1 0\n0 0 0\n1 0 zero\n0 1 0\n3 0 1 2\n")
         browser.open_file(broken)
