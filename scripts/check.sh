@@ -82,14 +82,15 @@ threads() {
   build/tsan/bin/test_threads --gtest_brief=1
 }
 
-# The libraries without threads.
+# The libraries and the program without optional libraries, compared with the program of scripts/test.sh if that was built.
 lean() {
-  echo "Without threads (build/lean) ..."
+  echo "Without optional libraries (build/lean) ..."
   cmake --preset lean >/dev/null
   cmake --build --preset lean
-  for test in cholesky core trimesh; do
+  for test in cholesky core one_thread; do
     GTEST_FILTER="-CostOfGraph.*:LocalMaps.*:March.*:StreamedLogMap.*" build/lean/bin/test_$test --gtest_brief=1  # these take a minute
   done
+  /usr/bin/python3 tests/app/lean_test.py build/lean/bin/ahm build/release/bin/ahm
 }
 
 for check in "${@:-format words tidy sanitizers}"; do

@@ -38,7 +38,7 @@ parity=("${tests[@]}" python3-vtk9 python3-open3d python3-nibabel connectome-wor
 web=(cmake ninja-build libeigen3-dev libnanoflann-dev clang-19 lld-19 wasi-libc libc++-19-dev-wasm32 libc++abi-19-dev-wasm32 libclang-rt-19-dev-wasm32
   libfmt-dev nlohmann-json3-dev libstb-dev libjs-three chromium chromium-driver python3-selenium)  # the site and its tests
 command -v npm >/dev/null || web+=(nodejs npm)  # Debian 12 has Node 18
-wheel=(cmake ninja-build g++ libeigen3-dev libnanoflann-dev nlohmann-json3-dev libstb-dev binutils
+wheel=(cmake ninja-build g++ libeigen3-dev libnanoflann-dev nlohmann-json3-dev libstb-dev libcli11-dev libfmt-dev libgtest-dev binutils
   pybind11-dev python3-pybind11 python3-dev python3-numpy python3-pytest python3-venv python3-pip python3-wheel)
 case "${1:-tests}" in
   program) packages=("${program[@]}") ;;

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Builds a self-contained wheel of the Python package in build/wheel: static libraries. Checks the libraries that
-# it needs, installs it into a new virtual environment, and runs the tests of the package that need only numpy and pytest.
+# Builds a self-contained wheel of the Python package in build/wheel, from the preset lean: static libraries.
+# Checks the libraries that it needs, installs it into a new virtual environment, and runs the tests of the package that need only
+# numpy and pytest.
 #   wheel.sh
 # The wheel is packed by Debian's python3-wheel. numpy and pytest in the environment are Debian's, so this works without a package index.
 set -euo pipefail
@@ -9,16 +10,14 @@ cd "$(dirname "$0")/.."
 scripts/install_packages.sh wheel
 python=/usr/bin/python3
 folder=build/wheel
-echo "Building ($folder) ..."
+echo "Building (build/lean) ..."
 # libgcc is shared: exceptions pass through functions of glibc, such as pthread_once, which use the shared one.
-cmake -S . -B "$folder" -G Ninja -DCMAKE_BUILD_TYPE=Release -DAHM_UNITY_BUILD=ON -DPython3_EXECUTABLE="$python" \
-  -DAHM_WITH_FLANN=OFF -DAHM_WITH_MINIZIP=OFF -DAHM_WITH_PCL=OFF -DAHM_WITH_PUGIXML=OFF -DAHM_WITH_ZLIB=OFF \
-  -DAHM_BUILD_APPS=OFF -DAHM_BUILD_EXAMPLES=OFF -DAHM_BUILD_TESTS=OFF -DAHM_INSTALL=OFF \
-  -DCMAKE_MODULE_LINKER_FLAGS="-static-libstdc++ -Wl,--exclude-libs,ALL" >/dev/null
-cmake --build "$folder" --target ahm_python
+cmake --preset lean >/dev/null
+cmake --build --preset lean --target ahm_python
+mkdir -p "$folder"
 
 echo "Checking the needed libraries ..."
-module="$(echo "$folder"/python/ahm/_core.*.so)"
+module="$(echo build/lean/python/ahm/_core.*.so)"
 needed="$(objdump -p "$module" | awk '$1 == "NEEDED" { print $2 }')"
 others="$(grep -Ev '^(libc\.so\.6|libm\.so\.6|libpthread\.so\.0|libgcc_s\.so\.1|ld-linux-x86-64\.so\.2)$' <<<"$needed" || true)"
 [ -z "$others" ] || { echo "error: $module needs $others" >&2; exit 1; }
@@ -30,7 +29,7 @@ version="$(sed -n 's/^version = "\(.*\)"/\1/p' pyproject.toml)"
 tag="$("$python" -c 'import sys; print("cp%d%d" % sys.version_info[:2])')"
 root="$folder/ahm-$version"
 rm -rf "$root" "$folder"/*.whl && mkdir -p "$root/ahm-$version.dist-info"
-cp -r "$folder/python/ahm" "$root/ahm"
+cp -r build/lean/python/ahm "$root/ahm"
 find "$root" -name __pycache__ -prune -exec rm -r {} +
 strip --strip-unneeded "$root"/ahm/_core.*.so
 cp LICENSE "$root/ahm-$version.dist-info/"

@@ -269,8 +269,7 @@ int run_and_report(int argc, char** argv) {
 
 }  // namespace
 
-// Exits without running the destructors of libraries, as the program ahm does: if address space is too small, OpenBLAS would wait for
-// threads that never end.
+// Exits without running the destructors of libraries, as the program ahm does.
 int main(int argc, char** argv) {
   app::install_interrupt_handling(name);
   _exit(run_and_report(argc, argv));

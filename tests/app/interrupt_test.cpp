@@ -121,7 +121,7 @@ TEST_F(Scarce, DiskIsReported) {
   EXPECT_EQ(files(), Words{"sphere.xyz"});
 }
 
-// The libraries use 110 MB of address space, each of the buffers of BLAS 128 MB.
+// The libraries use 110 MB of address space, each buffer of CHOLMOD's BLAS 128 MB.
 TEST_F(Scarce, MemoryIsReported) {
   write("sphere.xyz", xyz(sphere(2000)));
   int refused = 0, done = 0;

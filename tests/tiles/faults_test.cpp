@@ -230,7 +230,7 @@ TEST(TilesProgram, NamesItsOwnOptions) {
             "ahm-tiles: error: 1 non-finite point in the file; drop such points with --drop-nan\n");
 }
 
-/// Without enough address space the threads of OpenBLAS never end. From 200 MB on the system's loader has what it needs.
+/// From 200 MB on the system's loader has what it needs.
 TEST(TilesProgram, EndsIfAddressSpaceIsScarce) {
 #ifdef AHM_SANITIZED
   GTEST_SKIP() << "the address sanitizer takes more than any limit";

@@ -104,12 +104,21 @@ export class Solver {
   free(): void;
 }
 
+export interface MeshOptions {
+  /** "error" (default): refuse edges with three faces and more; "split": cut the mesh there. */
+  nonManifold?: 'error' | 'split';
+  /**
+   * Merge vertices at most this far apart, world units; 0: at equal positions, as glTF has them at seams. Default: none.
+   * Maps still have one entry per vertex of the input.
+   */
+  weld?: number | null;
+}
+
 export class Library {
   private constructor();
   readonly version: string;
-  /** @param options.nonManifold  "error": refuse edges with three faces and more; "split": cut the mesh there */
-  triangleMesh(positions: Rows, triangles: Rows, options?: {nonManifold?: 'error' | 'split'}): Surface;
-  polygonMesh(positions: Rows, faces: ArrayLike<number>[], options?: {nonManifold?: 'error' | 'split'}): Surface;
+  triangleMesh(positions: Rows, triangles: Rows, options?: MeshOptions): Surface;
+  polygonMesh(positions: Rows, faces: ArrayLike<number>[], options?: MeshOptions): Surface;
   /** @param options.normals  one per point, of any length; estimated if missing */
   pointCloud(positions: Rows, options?: {normals?: Rows}): Surface;
   solver(surface: Surface, options?: {method?: Method}): Solver;

@@ -23,9 +23,14 @@ class Module {
     this.exports = exports;
   }
 
+  /** A typed array in the memory. Pointers above 2 GiB are negative numbers in JavaScript. */
+  array(Type, pointer, length) {
+    return new Type(this.exports.memory.buffer, pointer >>> 0, length);
+  }
+
   text(pointer) {
-    const bytes = new Uint8Array(this.exports.memory.buffer);
-    return new TextDecoder().decode(bytes.subarray(pointer, bytes.indexOf(0, pointer)));
+    const bytes = this.array(Uint8Array, pointer);
+    return new TextDecoder().decode(bytes.subarray(0, bytes.indexOf(0)));
   }
 
   /** Throws the error of the last call if its result is 0. */
@@ -42,7 +47,7 @@ class Module {
       for (const array of arrays)
         pointers.push(array === null ? 0 : this.checked(this.exports.ahm_allocate(Math.max(array.byteLength, 8))));
       arrays.forEach((array, k) => {  // after all allocations: these may replace the buffer
-        if (array !== null) new array.constructor(this.exports.memory.buffer, pointers[k], array.length).set(array);
+        if (array !== null) this.array(array.constructor, pointers[k], array.length).set(array);
       });
       return body(...pointers);
     } finally {
@@ -51,8 +56,7 @@ class Module {
   }
 
   column(k) {
-    const length = this.exports.ahm_column_length(k);
-    return new Float64Array(this.exports.memory.buffer, this.exports.ahm_column(k), length).slice();
+    return this.array(Float64Array, this.exports.ahm_column(k), this.exports.ahm_column_length(k)).slice();
   }
 
   /** Calls a function that stores columns, and returns what read() makes of them. */
@@ -93,7 +97,7 @@ class Handle {
 /** Flat numbers from a flat array or from an array of arrays of `width` numbers. */
 function flat(values, width, Type, name) {
   if (values instanceof Type && values.length % width === 0) return values;
-  const list = Array.from(values ?? []);
+  const list = ArrayBuffer.isView(values) ? values : Array.from(values ?? []);
   const nested = list.length > 0 && typeof list[0] === 'object';
   if (nested) {
     const bad = list.findIndex((entry) => entry.length !== width);
@@ -130,6 +134,13 @@ const places = (list) => Float64Array.from(list.flatMap(placeNumbers));
 function checkChoice(value, choices, name) {
   if (!choices.includes(value)) throw new InvalidArgument(`${name} is ${value}; choose one of ${choices.join(', ')}`);
   return value;
+}
+
+/** Options of meshes as arguments of the module: whether to split, and the distance of merged vertices (-1: none). */
+function meshOptions({nonManifold = 'error', weld = null} = {}) {
+  checkChoice(nonManifold, ['error', 'split'], 'nonManifold');
+  if (weld !== null && !(typeof weld === 'number' && weld >= 0)) throw new InvalidArgument(`weld is ${weld}; expected a distance of 0 or more`);
+  return [nonManifold === 'split' ? 1 : 0, weld ?? -1];
 }
 
 export class Surface {
@@ -180,6 +191,7 @@ export class Solver {
   distance(sources, {radius = Infinity} = {}) {
     const {module} = this.#handle;
     const list = Array.isArray(sources) ? sources : [sources];
+    if (list.length === 0) throw new InvalidArgument('sources: empty; expected a place or an array of places');
     return module.withArrays([places(list)], (pointer) =>
       module.columns(module.exports.ahm_distance(this.#handle.get(), pointer, list.length, radius), (column) => column(0)),
     );
@@ -233,23 +245,25 @@ export class Library {
     return this.#module.text(this.#module.exports.ahm_version());
   }
 
-  triangleMesh(positions, triangles, {nonManifold = 'error'} = {}) {
-    const split = checkChoice(nonManifold, ['error', 'split'], 'nonManifold') === 'split' ? 1 : 0;
+  triangleMesh(positions, triangles, options) {
+    const [split, weld] = meshOptions(options);
     const points = flat(positions, 3, Float64Array, 'positions');
     const corners = flat(triangles, 3, Int32Array, 'triangles');
     return this.#surface([points, corners], (p, c) =>
-      this.#module.exports.ahm_triangle_mesh(p, points.length / 3, c, corners.length / 3, split),
+      this.#module.exports.ahm_triangle_mesh(p, points.length / 3, c, corners.length / 3, split, weld),
     );
   }
 
-  polygonMesh(positions, faces, {nonManifold = 'error'} = {}) {
-    const split = checkChoice(nonManifold, ['error', 'split'], 'nonManifold') === 'split' ? 1 : 0;
+  polygonMesh(positions, faces, options) {
+    const [split, weld] = meshOptions(options);
     const points = flat(positions, 3, Float64Array, 'positions');
+    const bad = Array.from(faces).findIndex((face) => !(face?.length >= 0));
+    if (bad >= 0) throw new InvalidArgument(`faces: entry ${bad} is ${faces[bad]}; expected an array of vertex numbers`);
     const begin = [0];
     for (const face of faces) begin.push(begin.at(-1) + face.length);
-    const corners = flat(faces.flatMap((face) => Array.from(face)), 1, Int32Array, 'faces');
+    const corners = flat(Array.from(faces).flatMap((face) => Array.from(face)), 1, Int32Array, 'faces');
     return this.#surface([points, Int32Array.from(begin), corners], (p, b, c) =>
-      this.#module.exports.ahm_polygon_mesh(p, points.length / 3, b, faces.length, c, split),
+      this.#module.exports.ahm_polygon_mesh(p, points.length / 3, b, faces.length, c, split, weld),
     );
   }
 

@@ -2,7 +2,8 @@
 
 const element = (id) => document.getElementById(id);
 const cancelled = () => new DOMException('cancelled', 'AbortError');
-const wasm = WebAssembly.compileStreaming(fetch('ahm.wasm'));
+// Not by compileStreaming, which refuses the file if the server does not know the type of .wasm files.
+const wasm = fetch('ahm.wasm').then((answer) => answer.arrayBuffer()).then((bytes) => WebAssembly.compile(bytes));
 
 /** Requests to a session in a worker, one after the other. `fetch` has the arguments and the result of window.fetch. */
 class WorkerTransport {
@@ -84,8 +85,13 @@ const nameOf = (file) => file.name.replace(/\.gz$/i, '');
 
 /** Name and bytes of a file, unpacked if it is compressed. */
 async function contents(file) {
-  const stream = file.name === nameOf(file) ? file : new Response(file.stream().pipeThrough(new DecompressionStream('gzip')));
-  return [nameOf(file), new Uint8Array(await stream.arrayBuffer())];
+  const isPacked = file.name !== nameOf(file);
+  try {
+    const stream = isPacked ? new Response(file.stream().pipeThrough(new DecompressionStream('gzip'))) : file;
+    return [nameOf(file), new Uint8Array(await stream.arrayBuffer())];
+  } catch (error) {
+    throw new Error(`cannot read '${file.name}': ${isPacked ? 'it is damaged, not compressed with gzip, or too large' : error.message}`);
+  }
 }
 
 const transport = window.ahm = new WorkerTransport();
@@ -95,15 +101,19 @@ function say(text, isError = false) {
   element('say').classList.toggle('error', isError);
 }
 
-/** Opens the first file; the others may be images or buffers that it refers to. */
-async function open(files) {
+/** Opens the first file that is not an image or a buffer; the others may be images and buffers that it refers to. */
+async function open(list) {
+  // Files of this window: those that are dropped on the viewer cannot be read after its frame is removed.
+  const files = Array.from(list, (file) => new File([file], file.name));
+  const at = files.findIndex((file) => !/\.(bin|mtl|png|jpe?g)$/i.test(file.name));
   if (files.length === 0) return;
+  if (at > 0) files.unshift(...files.splice(at, 1));
   element('viewer')?.remove();
   element('start').hidden = true;
   say(`reading ${files[0].name} …`);
   transport.progress = (stage, fraction) => say(`${stage} ${fraction > 0 ? Math.round(100 * fraction) + ' %' : '…'}`);
   try {
-    const answer = await transport.open([...files]), {error, warnings} = await answer.json();
+    const answer = await transport.open(files), {error, warnings} = await answer.json();
     if (!answer.ok) throw new Error(error);
     say(warnings.join('; '));
     const page = Object.assign(document.createElement('iframe'), {id: 'viewer', src: 'view.html', title: 'viewer'});

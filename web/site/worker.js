@@ -7,7 +7,7 @@ const most = 65536;  // pages of memory, 4 GB
 const decoder = new TextDecoder(), encoder = new TextEncoder();
 let ahm, shown = 0;
 
-const bytesAt = (pointer, count) => new Uint8Array(ahm.memory.buffer, pointer, count);
+const bytesAt = (pointer, count) => new Uint8Array(ahm.memory.buffer, pointer >>> 0, count);  // pointers above 2 GB are negative
 const textAt = (pointer, count) => decoder.decode(bytesAt(pointer, count));
 
 /** Shows the progress, at most ten times a second. */

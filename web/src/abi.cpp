@@ -1,6 +1,7 @@
 // The functions that web/package/index.js calls. Objects are pointers that the caller releases. A function that fails returns 0, and
 // `ahm_error_kind` and `ahm_error_message` describe the error. Functions with arrays as results keep them in columns until the next
 // call. The module has one thread.
+#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 #include <limits>
@@ -15,6 +16,7 @@
 #include "ahm/error.hpp"
 #include "ahm/pointcloud/point_cloud_surface.hpp"
 #include "ahm/polymesh/polygon_mesh_surface.hpp"
+#include "ahm/surface/mesh_repair.hpp"
 #include "ahm/surface/surface_solver.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
 
@@ -67,8 +69,29 @@ SurfacePointer* shared(S&& surface) {
   return new SurfacePointer(std::make_shared<const S>(std::forward<S>(surface)));
 }
 
+/// Builds a mesh, or if `weld` is not negative, a mesh of merged vertices with the rows of the input.
+/// @param build  build(positions, faces): the surface
+template <class Build>
+SurfacePointer* build_mesh(std::vector<ahm::Vec3> positions, const ahm::FaceList& faces, double weld,
+                           const Build& build) {
+  if (weld < 0) return shared(build(positions, faces));
+  ahm::RepairedMesh mesh = ahm::repair_mesh(positions, faces, {.weld = weld});
+  auto built = build(positions, mesh.faces());
+  return shared(
+      ahm::RepairedSurface(std::make_unique<decltype(built)>(std::move(built)), std::move(positions), std::move(mesh)));
+}
+
+/// The number of an input face on the surface.
+ahm::Index face_on(const ahm::Surface& surface, ahm::Index face) {
+  const auto* repaired = dynamic_cast<const ahm::RepairedSurface*>(&surface);
+  if (!repaired) return face;
+  if (const auto remaining = repaired->mesh().remaining(face)) return *remaining;
+  throw ahm::InvalidArgument("there is no face " + std::to_string(face) +
+                             ", or it has no area after welding; choose another face");
+}
+
 /// Reads places. Each is a kind and its numbers: 0 row; 1 x y z; 2 face, number of corners, weights.
-std::vector<ahm::Location> read_places(const double* numbers, std::uint32_t count) {
+std::vector<ahm::Location> read_places(const ahm::SurfaceSolver& solver, const double* numbers, std::uint32_t count) {
   std::vector<ahm::Location> places;
   for (std::uint32_t k = 0; k < count; ++k) {
     const auto kind = static_cast<int>(*numbers++);
@@ -78,7 +101,7 @@ std::vector<ahm::Location> read_places(const double* numbers, std::uint32_t coun
       places.emplace_back(ahm::Vec3{numbers[0], numbers[1], numbers[2]});
       numbers += 3;
     } else {
-      const auto face = static_cast<ahm::Index>(*numbers++);
+      const ahm::Index face = face_on(solver.surface(), static_cast<ahm::Index>(*numbers++));
       const auto corners = static_cast<std::size_t>(*numbers++);
       places.emplace_back(ahm::FacePoint{face, std::vector<double>(numbers, numbers + corners)});
       numbers += corners;
@@ -114,27 +137,37 @@ AHM_EXPORT(ahm_column_length) std::uint32_t ahm_column_length(std::uint32_t k) {
 }
 AHM_EXPORT(ahm_forget_columns) void ahm_forget_columns() { columns = {}; }
 
+/// @param weld  merges vertices at most this far apart; negative: merges none
 AHM_EXPORT(ahm_triangle_mesh)
 SurfacePointer* ahm_triangle_mesh(const double* positions, std::uint32_t vertices, const std::int32_t* corners,
-                                  std::uint32_t faces, int split) {
+                                  std::uint32_t faces, int split, double weld) {
   return guarded([&] {
-    std::vector<ahm::Triangle> triangles(faces);
-    for (std::uint32_t f = 0; f < faces; ++f) triangles[f] = {corners[3 * f], corners[3 * f + 1], corners[3 * f + 2]};
+    std::vector<ahm::Offset> begin(faces + 1);
+    for (std::uint32_t f = 0; f <= faces; ++f) begin[f] = ahm::Offset{3} * f;
     ahm::trimesh::MeshOptions options;
     if (split != 0) options.non_manifold = ahm::NonManifold::split;
-    return shared(ahm::trimesh::TriangleMeshSurface::build(points(positions, vertices), triangles, options));
+    return build_mesh(points(positions, vertices), {begin, {corners, std::size_t{3} * faces}}, weld,
+                      [&](const std::vector<ahm::Vec3>& at, const ahm::FaceList& list) {
+                        std::vector<ahm::Triangle> triangles(list.size());
+                        for (std::size_t f = 0; f < list.size(); ++f)
+                          std::copy_n(list.vertices.begin() + 3 * f, 3, triangles[f].begin());
+                        return ahm::trimesh::TriangleMeshSurface::build(at, triangles, options);
+                      });
   });
 }
 
+/// @param weld  as above
 AHM_EXPORT(ahm_polygon_mesh)
 SurfacePointer* ahm_polygon_mesh(const double* positions, std::uint32_t vertices, const std::int32_t* begin,
-                                 std::uint32_t faces, const std::int32_t* corners, int split) {
+                                 std::uint32_t faces, const std::int32_t* corners, int split, double weld) {
   return guarded([&] {
+    const std::vector<ahm::Offset> offsets(begin, begin + faces + 1);
     ahm::polymesh::PolygonOptions options;
     if (split != 0) options.non_manifold = ahm::NonManifold::split;
-    return shared(ahm::polymesh::PolygonMeshSurface::build(
-        points(positions, vertices), std::vector<ahm::Offset>(begin, begin + faces + 1),
-        std::span(corners, static_cast<std::size_t>(begin[faces])), options));
+    return build_mesh(points(positions, vertices), {offsets, {corners, static_cast<std::size_t>(begin[faces])}}, weld,
+                      [&](const std::vector<ahm::Vec3>& at, const ahm::FaceList& list) {
+                        return ahm::polymesh::PolygonMeshSurface::build(at, list.begin, list.vertices, options);
+                      });
   });
 }
 
@@ -177,7 +210,7 @@ int ahm_log_map(const ahm::SurfaceSolver* solver, const double* place, const dou
     options.radius = radius;
     options.frames = false;
     if (u_axis) options.u_axis = ahm::Vec3{u_axis[0], u_axis[1], u_axis[2]};
-    ahm::SurfaceLogMap map = solver->log_map(read_places(place, 1).front(), options);
+    ahm::SurfaceLogMap map = solver->log_map(read_places(*solver, place, 1).front(), options);
     columns.assign(8, {});
     for (const ahm::Status status : map.status) columns[6].push_back(static_cast<double>(status));
     if (quality != 0) columns[7] = solver->quality(map);
@@ -196,21 +229,21 @@ int ahm_distance(const ahm::SurfaceSolver* solver, const double* places, std::ui
   return guarded([&] {
     ahm::SurfaceDistanceOptions options;
     options.radius = radius;
-    columns = {solver->distance(read_places(places, count), options)};
+    columns = {solver->distance(read_places(*solver, places, count), options)};
     return 1;
   });
 }
 
 AHM_EXPORT(ahm_path) int ahm_path(const ahm::SurfaceSolver* solver, const double* places) {
   return guarded([&] {
-    const std::vector<ahm::Location> ends = read_places(places, 2);
+    const std::vector<ahm::Location> ends = read_places(*solver, places, 2);
     return keep(solver->path(ends[0], ends[1]));
   });
 }
 
 AHM_EXPORT(ahm_trace)
 int ahm_trace(const ahm::SurfaceSolver* solver, const double* place, double x, double y, double z, double length) {
-  return guarded([&] { return keep(solver->trace(read_places(place, 1).front(), {x, y, z}, length)); });
+  return guarded([&] { return keep(solver->trace(read_places(*solver, place, 1).front(), {x, y, z}, length)); });
 }
 
 /// Columns: begin of the entries of each source, and per entry row, u, v, distance, weight, cos and sin of the transport.
@@ -222,7 +255,7 @@ int ahm_local_maps(const ahm::SurfaceSolver* solver, const double* places, std::
     options.radius = radius;
     options.k = k;
     const ahm::RowLocalMaps maps =
-        count == 0 ? solver->local_maps(options) : solver->local_maps(read_places(places, count), options);
+        count == 0 ? solver->local_maps(options) : solver->local_maps(read_places(*solver, places, count), options);
     columns.assign(8, {});
     columns[0].assign(maps.indptr.begin(), maps.indptr.end());
     for (std::size_t e = 0; e < maps.neighbors.size(); ++e) {

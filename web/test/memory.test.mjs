@@ -15,7 +15,7 @@ function session() {
   const {exports} = new WebAssembly.Instance(compiled, imports);
   exports._initialize();
   const copy = (text) => {
-    const bytes = encoder.encode(text), pointer = exports.ahm_allocate(bytes.length);
+    const bytes = encoder.encode(text), pointer = exports.ahm_allocate(bytes.length) >>> 0;
     new Uint8Array(exports.memory.buffer, pointer, bytes.length).set(bytes);
     return [pointer, bytes.length];
   };

@@ -75,6 +75,12 @@ class Browser:
         self.driver.get(self.address)
         self.driver.find_element(By.ID, "pick").send_keys(str(path.resolve()))
 
+    def drop(self, *paths):
+        """Drops files on the middle of the page, as the file manager does."""
+        data = {"items": [], "files": [str(path.resolve()) for path in paths], "dragOperationsMask": 1}
+        for kind in ("dragEnter", "dragOver", "drop"):
+            self.driver.execute_cdp_cmd("Input.dispatchDragEvent", {"type": kind, "x": 600, "y": 400, "data": data})
+
     def enter_viewer(self):
         self.wait("document.getElementById('viewer') !== null")
         self.driver.switch_to.frame("viewer")
@@ -169,6 +175,12 @@ class Site(unittest.TestCase):
             self.assertEqual(browser.js("return document.getElementById('heading').textContent"), title)
             self.assertIn("2,000 points", browser.js("return document.getElementById('about').textContent"))
         browser.driver.save_screenshot(str(browser.work / "cloud.png"))
+        plain = browser.work / "plain.xyz.gz"
+        plain.write_bytes(cloud.read_bytes())
+        browser.open_file(plain)
+        browser.wait("document.getElementById('say').classList.contains('error')")
+        self.assertEqual(browser.js("return document.getElementById('say').textContent"),
+                         "cannot read 'plain.xyz.gz': it is damaged, not compressed with gzip, or too large")
         broken = browser.work / "broken.off"
         broken.write_text("OFF\n3 1 0\n0 0 0\n1 0 zero\n0 1 0\n3 0 1 2\n")
         browser.open_file(broken)
@@ -176,6 +188,33 @@ class Site(unittest.TestCase):
         self.assertEqual(browser.js("return document.getElementById('say').textContent"),
                          "cannot read 'broken.off', line 4: 'zero' is not a finite number in double precision")
         browser.driver.save_screenshot(str(browser.work / "error.png"))
+
+    def test_dropped_files_are_opened(self):
+        browser = self.browser
+        browser.driver.get("about:blank")
+        browser.driver.get(browser.address)
+        gltf, data = sphere_gltf(8)
+        buffer, model = browser.work / "buffer.bin", browser.work / "model.gltf"
+        gltf["buffers"][0]["uri"] = buffer.name
+        buffer.write_bytes(data)
+        model.write_text(json.dumps(gltf))
+        browser.drop(buffer, model)
+        browser.enter_viewer()
+        self.assertEqual(browser.js("return document.getElementById('heading').textContent"), "model.gltf")
+        mesh = browser.work / "triangle.obj"
+        mesh.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+        browser.drop(mesh)  # on the viewer
+        browser.driver.switch_to.default_content()
+        browser.wait("document.getElementById('viewer')?.contentDocument?.getElementById('heading')?.textContent === 'triangle.obj'")
+        browser.enter_viewer()
+        scan = browser.work / "scan.pcd"
+        scan.write_text("VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 1\nHEIGHT 1\nPOINTS 1\nDATA ascii\n0 0 0\n")
+        browser.drop(scan)
+        browser.driver.switch_to.default_content()
+        browser.wait("document.getElementById('say').classList.contains('error')")
+        self.assertEqual(browser.js("return document.getElementById('say').textContent"),
+                         "cannot read 'scan.pcd': this build has no PCL, which reads .pcd files; convert it to .ply or .xyz")
+        self.assertTrue(browser.driver.find_element(By.ID, "start").is_displayed())
 
     def test_escape_ends_a_computation_and_the_page_goes_on(self):
         browser = self.browser
@@ -219,8 +258,8 @@ def write_png(path, size=64):
                      chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
 
 
-def write_glb(path, n=30):
-    """A sphere with positions and normals."""
+def sphere_gltf(n):
+    """A sphere with positions and normals, and the bytes of its buffer."""
     points = [(math.sin(math.pi * i / n) * math.cos(math.pi * j / n), math.cos(math.pi * i / n), math.sin(math.pi * i / n) * math.sin(math.pi * j / n))
               for i in range(1, n) for j in range(2 * n + 1)]  # the first meridian twice, as at seams of textures
     at = lambda i, j: i * (2 * n + 1) + j
@@ -229,12 +268,17 @@ def write_glb(path, n=30):
     positions = b"".join(struct.pack("<3f", *p) for p in points)
     data = positions + struct.pack(f"<{len(corners)}I", *corners)
     vectors = {"bufferView": 0, "componentType": 5126, "count": len(points), "type": "VEC3", "min": [-1, -1, -1], "max": [1, 1, 1]}
-    text = json.dumps({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
-                       "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "NORMAL": 0}, "indices": 1, "material": 0}]}],
-                       "materials": [{"pbrMetallicRoughness": {"baseColorFactor": [0.6, 0.6, 0.6, 1], "metallicFactor": 0}}],
-                       "accessors": [vectors, {"bufferView": 1, "componentType": 5125, "count": len(corners), "type": "SCALAR"}],
-                       "bufferViews": [{"buffer": 0, "byteLength": len(positions)}, {"buffer": 0, "byteOffset": len(positions), "byteLength": 4 * len(corners)}],
-                       "buffers": [{"byteLength": len(data)}]}).encode()
+    return {"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+            "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "NORMAL": 0}, "indices": 1, "material": 0}]}],
+            "materials": [{"pbrMetallicRoughness": {"baseColorFactor": [0.6, 0.6, 0.6, 1], "metallicFactor": 0}}],
+            "accessors": [vectors, {"bufferView": 1, "componentType": 5125, "count": len(corners), "type": "SCALAR"}],
+            "bufferViews": [{"buffer": 0, "byteLength": len(positions)}, {"buffer": 0, "byteOffset": len(positions), "byteLength": 4 * len(corners)}],
+            "buffers": [{"byteLength": len(data)}]}, data
+
+
+def write_glb(path):
+    gltf, data = sphere_gltf(30)
+    text = json.dumps(gltf).encode()
     text += b" " * (-len(text) % 4)
     path.write_bytes(struct.pack("<3I", 0x46546C67, 2, 28 + len(text) + len(data)) + struct.pack("<I4s", len(text), b"JSON") + text +
                      struct.pack("<I4s", len(data), b"BIN\0") + data)

@@ -65,6 +65,6 @@ int run(int argc, char** argv) try {
 
 }  // namespace
 
-// All output is written when `run` returns. Exits without running the destructors of libraries: OpenBLAS would wait for its threads,
-// which never end if address space is too small for their buffers.
+// All output is written when `run` returns. Exits without running the destructors of libraries: OpenBLAS, which CHOLMOD links, would wait for
+// its threads, which never end if address space is too small for their buffers.
 int main(int argc, char** argv) { _exit(run(argc, argv)); }

@@ -70,6 +70,27 @@ test('polygons and clouds have maps', () => {
   assert.ok(cloud.quality.every((q) => q > 0.5));
 });
 
+test('welded meshes have the maps of the mesh without repeated vertices', () => {
+  const {positions, triangles} = square(11, (x, y) => 0.2 * x * y);
+  const whole = ahm.solver(ahm.triangleMesh(positions, triangles)).logMap(60, {uAxis: [1, 0, 0]});
+  const origin = triangles.flat(), corners = origin.map((_, k) => k);  // each triangle has its own vertices
+  const apart = origin.map((row, k) => positions[row].map((x, c) => x + (c < 2 ? 1e-6 * Math.sin(k) : 0)));
+  corners.push(0, 1, 1);  // without area
+  const faces = [...corners.keys()].filter((k) => k % 3 === 0).map((k) => corners.slice(k, k + 3));
+  const source = origin.indexOf(60);
+  for (const [points, weld, tolerance] of [[origin.map((row) => positions[row]), 0, 1e-12], [apart, 1e-5, 1e-4]])
+    for (const surface of [ahm.triangleMesh(points, corners, {weld}), ahm.polygonMesh(points, faces, {weld})]) {
+      const map = ahm.solver(surface).logMap(source, {uAxis: [1, 0, 0]});
+      assert.equal(map.u.length, origin.length);
+      origin.forEach((row, k) => near(map.distance[k], whole.distance[row], tolerance, `distance of ${k}`));
+    }
+  const points = origin.map((row) => positions[row]), end = [0, 0, 1];
+  const solver = ahm.solver(ahm.triangleMesh(points, [0, 1, 1, ...corners], {weld: 0}));  // face 0 has no area
+  near(solver.distance({face: 1, weights: end})[2], 0, 1e-12, 'the last corner of face 1');
+  assert.throws(() => solver.distance({face: 0, weights: end}), /face 0/);
+  assert.throws(() => ahm.triangleMesh(points, corners, {weld: -1}), libahm.InvalidArgument);
+});
+
 test('places, radius, distances and paths', () => {
   const {positions, triangles} = square(21);
   const solver = ahm.solver(ahm.triangleMesh(positions, triangles));
@@ -121,6 +142,9 @@ test('errors are of the class of the library, with its message', () => {
   refused(() => solver.logMap(0, {radius: -1}), libahm.InvalidArgument, /radius/);
   refused(() => ahm.triangleMesh(positions, [[0, 1, 99]]), libahm.InvalidGeometry, /99/);
   refused(() => ahm.triangleMesh(positions, [[0, 1]]), libahm.InvalidArgument, /triangles/);
+  refused(() => ahm.triangleMesh(positions, triangles, {weld: true}), libahm.InvalidArgument, /weld is true/);
+  refused(() => solver.distance([]), libahm.InvalidArgument, /sources/);
+  refused(() => ahm.polygonMesh(positions, [0, 1, 2]), libahm.InvalidArgument, /faces: entry 0/);
   refused(() => ahm.pointCloud([[0, 0, 0], [1, 0, 0]]), libahm.InvalidGeometry, /point/);
   refused(() => ahm.solver(mesh, {method: 'best'}), libahm.InvalidArgument, /method/);
   refused(() => ahm.solver(ahm.pointCloud(positions), {method: 'exact'}).logMap(0), libahm.InvalidArgument, /./);
@@ -141,6 +165,19 @@ test('freed memory is used again', () => {
   const before = process.memoryUsage().arrayBuffers;
   for (let k = 0; k < 30; ++k) once();
   assert.ok(process.memoryUsage().arrayBuffers - before < 100e6);
+});
+
+test('memory above 2 GiB is used', async () => {
+  const {instantiate} = WebAssembly;
+  let instance;
+  WebAssembly.instantiate = async (...sources) => (instance = await instantiate(...sources));
+  const high = await libahm.load().finally(() => (WebAssembly.instantiate = instantiate));
+  high.triangleMesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]).free();  // the first allocation takes all memory up to here
+  instance.exports.memory.grow(33000);  // 2.01 GiB
+  const {positions, triangles} = square(101);
+  const map = high.solver(high.triangleMesh(positions, triangles)).logMap(0, {uAxis: [1, 0, 0]});
+  near(map.u.at(-1), 1, 1e-9, 'u of the opposite corner');
+  assert.throws(() => high.triangleMesh(positions, [[0, 1, 99999]]), /99999/);
 });
 
 test('maps are those of the native program', {skip: !process.env.AHM_PROGRAM && 'AHM_PROGRAM is not set'}, () => {

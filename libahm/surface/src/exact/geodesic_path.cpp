@@ -425,8 +425,7 @@ GeodesicPath geodesic_path(const PolyhedralSurface& surface, std::span<const Mes
 TracedPath trace(const PolyhedralSurface& surface, const MeshPoint& from, double direction, double length) {
   const MeshPoint start = checked(surface, from, "from");
   if (!std::isfinite(direction)) throw InvalidArgument("'direction' is not finite");
-  if (!(length >= 0) || !std::isfinite(length))
-    throw InvalidArgument("'length' is " + detail::number(length) + "; it must be finite and >= 0");
+  if (!(length >= 0) || !std::isfinite(length)) throw InvalidArgument("length must be a finite number >= 0");
   const Index vertex = vertex_of(surface, start);
   if (vertex < 0) {
     const Vec2 place = surface.place(start);
