@@ -10,8 +10,8 @@
 #include <fstream>
 #include <thread>
 
-#include "ahm/error.hpp"
 #include "ahm/cholesky/cholesky.hpp"
+#include "ahm/error.hpp"
 #include "measure.hpp"
 
 namespace ahm::bench {

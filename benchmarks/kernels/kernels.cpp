@@ -2,8 +2,8 @@
 
 #include <benchmark/benchmark.h>
 
-#include "ahm/heat/heat_operators.hpp"
 #include "ahm/cholesky/cholesky.hpp"
+#include "ahm/heat/heat_operators.hpp"
 
 namespace ahm::bench {
 

@@ -198,7 +198,9 @@ TEST_F(CommandLine, HelpNamesOptions) {
   for (const auto& [subcommand, parts] : words) EXPECT_TRUE(has_all(run_ok(subcommand + " --help").out, parts));
 }
 
-TEST_F(CommandLine, VersionNamesTheLibraries) { EXPECT_TRUE(has(run_ok("--version").out, "ahm ", "registers ", "Eigen ")); }
+TEST_F(CommandLine, VersionNamesTheLibraries) {
+  EXPECT_TRUE(has(run_ok("--version").out, "ahm ", "registers ", "Eigen "));
+}
 
 #ifdef AHM_WITH_PCL
 TEST_F(CommandLine, ModulesAreFoundThroughPath) {

@@ -48,8 +48,7 @@ nlohmann::ordered_json versions() {
 std::string versions_as_text() {
   const nlohmann::ordered_json v = versions();
   const auto text = [&](const char* key) { return v.at(key).get<std::string>(); };
-  std::string result =
-      fmt::format("ahm {}\nregisters {}\nEigen {}\n", text("ahm"), text("registers"), text("eigen"));
+  std::string result = fmt::format("ahm {}\nregisters {}\nEigen {}\n", text("ahm"), text("registers"), text("eigen"));
   if (v.contains("pcl")) result += fmt::format("PCL {}\n", text("pcl"));
   return result;
 }

@@ -4,7 +4,6 @@
 
 #ifdef AHM_WITH_CHOLMOD
 #include <cholmod.h>
-
 #include <dlfcn.h>
 
 #include <algorithm>
@@ -40,8 +39,8 @@ class OneBlasThread {
  private:
   // The BLAS is selected when the process starts, so functions that only OpenBLAS has are found by name.
   static inline int (*const get_)() = reinterpret_cast<int (*)()>(dlsym(RTLD_DEFAULT, "openblas_get_num_threads"));
-  static inline void (*const set_)(int) =
-      reinterpret_cast<void (*)(int)>(dlsym(RTLD_DEFAULT, "openblas_set_num_threads"));
+  static inline void (*const set_)(int) = reinterpret_cast<void (*)(int)>(dlsym(RTLD_DEFAULT,
+                                                                                "openblas_set_num_threads"));
   static inline std::mutex mutex_;
   static inline int users_ = 0, threads_before_ = 0;
 };

@@ -42,7 +42,8 @@ class Basis {
 
   void append(const Block& Q) {
     if (size_ % panel_ == 0)
-      panels_.push_back(std::make_unique_for_overwrite<double[]>(static_cast<std::size_t>(blocks() * panel_ * block_stride)));
+      panels_.push_back(
+          std::make_unique_for_overwrite<double[]>(static_cast<std::size_t>(blocks() * panel_ * block_stride)));
     size_ += b;
     for_each_block([&](Offset k) { copy_rows(Q.data() + k * block_rows, n_, rows(k), b, at(k, size_ - b)); });
   }
@@ -55,7 +56,8 @@ class Basis {
       if (part.size() == 0) part = Rows::Zero(size_ - first, b);
       double block[block_rows * b] = {};
       for (Offset c = 0; c < b; ++c)
-        for (Offset r = 0; r < rows(k); ++r) block[r * b + c] = Q[static_cast<std::size_t>(c * n_ + k * block_rows + r)];
+        for (Offset r = 0; r < rows(k); ++r)
+          block[r * b + c] = Q[static_cast<std::size_t>(c * n_ + k * block_rows + r)];
       for_each_panel(first, size_, [&](Offset from, Offset columns) {
         add_transposed_product(at(k, from), columns, block, part.data() + (from - first) * b);
       });

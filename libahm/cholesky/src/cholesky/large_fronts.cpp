@@ -115,8 +115,8 @@ Offset factor_large_front(double* L, Offset rows, Offset columns, double* update
     double* const panel = L + begin * (stride + W);
     slabs.rows = (rows - end) * W;
     slabs.depth = end - begin;
-    const Offset good = in_widest_registers(
-        [&](auto) { return eliminate<W, true>(panel, stride, slabs.depth, 0, slabs.depth * W); });
+    const Offset good =
+        in_widest_registers([&](auto) { return eliminate<W, true>(panel, stride, slabs.depth, 0, slabs.depth * W); });
     if (good < slabs.depth) return begin + good;
     const LaterColumns later{L + end * (stride + W), update, stride, (rows - columns) * W, columns - end, begin == 0};
     detail::parallel_chunks(slabs.rows, rows_at_once, threads, [&](Offset first, Offset last) {

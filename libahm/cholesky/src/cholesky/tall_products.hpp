@@ -10,7 +10,8 @@ namespace ahm {
 
 inline constexpr Offset block_columns = 16;  ///< columns of the matrices B, C and X below
 inline constexpr Offset block_rows = 64;
-inline constexpr Offset block_stride = 72;  ///< from one column to the next: an odd number of cache lines, so that columns use all sets
+inline constexpr Offset block_stride =
+    72;  ///< from one column to the next: an odd number of cache lines, so that columns use all sets
 
 /// C += A^T B for a block of rows.
 /// @param A  `columns` columns, a multiple of 8, with `block_stride`
