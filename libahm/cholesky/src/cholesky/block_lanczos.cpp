@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <random>
 #include <utility>
@@ -15,8 +16,9 @@ namespace {
 
 using Eigen::MatrixXd, Eigen::VectorXd;
 
-/// Largest residual |K^-1 x - mu x| / mu of an accepted eigenvector. One more block reduces it by about a factor of ten.
+/// Largest residual |K^-1 x - mu x| / mu of an accepted eigenvector.
 constexpr double residual_tolerance = 1e-11;
+constexpr double gain_of_a_block = 5;     ///< about how much one more block reduces the residuals
 constexpr Offset blocks_at_once = 64;     ///< blocks of rows per task
 constexpr Offset columns_of_panel = 128;  ///< columns of the basis in one piece of memory
 constexpr Offset b = lanczos_block;
@@ -69,20 +71,21 @@ class Basis {
 
   /// X += factor V C for the columns from `first`. X is n x C.cols(), column major.
   void add_to(std::span<double> X, const MatrixXd& C, double factor, Offset first = 0) const {
-    for (Offset c = 0; c < C.cols(); c += b) {
-      const Offset count = std::min(b, C.cols() - c);
-      Rows some = Rows::Zero(C.rows(), b);
-      some.leftCols(count) = factor * C.middleCols(c, count);
-      for_each_block([&](Offset k) {
-        double* const own = X.data() + c * n_ + k * block_rows;
+    const Offset groups = (C.cols() + b - 1) / b;
+    std::vector<Rows> factors(static_cast<std::size_t>(groups), Rows::Zero(C.rows(), b));
+    const auto count = [&](Offset g) { return std::min(b, C.cols() - g * b); };
+    for (Offset g = 0; g < groups; ++g) factors[g].leftCols(count(g)) = factor * C.middleCols(g * b, count(g));
+    for_each_block([&](Offset k) {
+      for (Offset g = 0; g < groups; ++g) {
+        double* const own = X.data() + g * b * n_ + k * block_rows;
         double block[b * block_stride] = {};
-        copy_rows(own, n_, rows(k), count, block);
+        copy_rows(own, n_, rows(k), count(g), block);
         for_each_panel(first, first + C.rows(), [&](Offset from, Offset columns) {
-          add_product(at(k, from), columns, some.data() + (from - first) * b, block);
+          add_product(at(k, from), columns, factors[g].data() + (from - first) * b, block);
         });
-        for (Offset a = 0; a < count; ++a) std::copy_n(block + a * block_stride, rows(k), own + a * n_);
-      });
-    }
+        for (Offset a = 0; a < count(g); ++a) std::copy_n(block + a * block_stride, rows(k), own + a * n_);
+      }
+    });
   }
 
  private:
@@ -146,8 +149,15 @@ class BlockLanczos {
   /// Columns of the space, without the block that the next step multiplies.
   Offset size() const { return V_.size() - b; }
 
-  /// The `count` largest eigenvalues in the space with coordinates of their vectors, if their residuals are small enough.
-  std::optional<std::pair<VectorXd, MatrixXd>> converged(Offset count) const {
+  /// Eigenpairs in the space.
+  struct Ritz {
+    VectorXd mu;
+    MatrixXd Y;       ///< coordinates of the eigenvectors
+    double residual;  ///< the largest, relative to mu
+  };
+
+  /// The `count` largest eigenvalues in the space.
+  Ritz largest(Offset count) const {
     const Offset m = size();
     MatrixXd T = MatrixXd::Zero(m, m);
     for (Offset j = 0; j * b < m; ++j) {
@@ -155,11 +165,11 @@ class BlockLanczos {
       if ((j + 1) * b < m) T.block((j + 1) * b, j * b, b, b) = couplings_[static_cast<std::size_t>(j)];
     }
     const Eigen::SelfAdjointEigenSolver<MatrixXd> solved(T);  // reads the lower triangle
-    const VectorXd mu = solved.eigenvalues().reverse().head(count);
-    const MatrixXd Y = solved.eigenvectors().rowwise().reverse().leftCols(count);
-    const VectorXd residuals = (coupling_ * Y.bottomRows(b)).colwise().norm();
-    if ((residuals.array() > residual_tolerance * mu.array()).any()) return std::nullopt;
-    return std::pair(mu, Y);
+    Ritz found{solved.eigenvalues().reverse().head(count), solved.eigenvectors().rowwise().reverse().leftCols(count),
+               0};
+    const VectorXd residuals = (coupling_ * found.Y.bottomRows(b)).colwise().norm();
+    found.residual = (residuals.array() / found.mu.array()).maxCoeff();
+    return found;
   }
 
   /// V Y
@@ -236,16 +246,18 @@ std::optional<Eigenpairs> largest_inverse_eigenpairs(const LinearSolver& solver,
                                                      unsigned threads, const Progress& progress) {
   if (n < 2 * b) return std::nullopt;
   BlockLanczos lanczos(solver, n, threads);
-  // Surfaces need about 3.5 count + 50 columns.
-  for (Offset next_check = 3 * count;;) {
+  // Surfaces need 4 count to 5 count columns.
+  for (Offset next_check = 7 * count / 2 + 3 * b;;) {
     if (lanczos.size() + 2 * b > n) return std::nullopt;
     progress.step("eigenvectors",
-                  std::min(0.9, static_cast<double>(lanczos.size()) / static_cast<double>(4 * count + 4 * b)));
+                  std::min(0.9, static_cast<double>(lanczos.size()) / static_cast<double>(4 * count + 8 * b)));
     lanczos.step();
     if (lanczos.size() < next_check) continue;
-    if (const auto found = lanczos.converged(count))
-      return Eigenpairs{{found->first.begin(), found->first.end()}, lanczos.vectors(found->second)};
-    next_check = lanczos.size() + lanczos.size() / 8;
+    const auto found = lanczos.largest(count);
+    if (found.residual <= residual_tolerance)
+      return Eigenpairs{{found.mu.begin(), found.mu.end()}, lanczos.vectors(found.Y)};
+    const double blocks = std::log(found.residual / residual_tolerance) / std::log(gain_of_a_block);
+    next_check = lanczos.size() + b * std::max<Offset>(1, static_cast<Offset>(std::min(blocks, 1e3)));
   }
 }
 
