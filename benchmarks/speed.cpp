@@ -28,7 +28,8 @@ double arithmetic_speed() {
     constexpr int sums = 2 * N();  // enough to hide the latency of an operation; they fit into the registers
     const double seconds = median_cpu_seconds([&] {
       const double f = factor;
-      Vector sum[sums] = {};
+      Vector sum[sums];
+      for (int k = 0; k < sums; ++k) sum[k] = Vector{} + k * f;  // different, so that the compiler keeps all
       for (int k = 0; k < steps; ++k)
 #pragma GCC unroll 16
         for (Vector& one : sum) one = one * f + f;
