@@ -2,16 +2,14 @@
 /// Products of tall matrices (n rows, a few columns). A tall matrix is stored in blocks of rows, one after another.
 #pragma once
 
-#include <span>
-
 #include "ahm/types.hpp"
 
 namespace ahm {
 
 inline constexpr Offset block_columns = 16;  ///< columns of the matrices B, C and X below
 inline constexpr Offset block_rows = 64;
-inline constexpr Offset block_stride =
-    72;  ///< from one column to the next: an odd number of cache lines, so that columns use all sets
+/// Numbers from one column of a block to the next: an odd number of cache lines, so that the columns use all sets of the caches.
+inline constexpr Offset block_stride = 72;
 
 /// C += A^T B for a block of rows.
 /// @param A  `columns` columns, a multiple of 8, with `block_stride`
