@@ -32,8 +32,8 @@ double arithmetic_speed() {
       for (int k = 0; k < sums; ++k) sum[k] = Vector{} + k * f;  // different, so that the compiler keeps all
       for (int k = 0; k < steps; ++k)
 #pragma GCC unroll 16
-        for (Vector& one : sum) one = one * f + f;
-      for (const Vector& one : sum) sink = sink + one[0];
+        for (int i = 0; i < sums; ++i) sum[i] = sum[i] * f + f;
+      for (int i = 0; i < sums; ++i) sink = sink + sum[i][0];
     });
     return 2.0 * steps * sums * N() / seconds;
   });

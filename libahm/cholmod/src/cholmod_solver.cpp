@@ -19,8 +19,8 @@ namespace {
 
 static_assert(sizeof(Offset) == sizeof(SuiteSparse_long), "CHOLMOD's long indices are passed without a copy");
 
-/// While any object of this class exists, OpenBLAS, if it is the BLAS, runs on one thread, so that results do not depend on the number of
-/// threads. The last destructor restores the setting of the process.
+/// Sets OpenBLAS, if it is the BLAS, to one thread while an object of this class exists. Results then do not depend on the number of threads.
+/// The last destructor restores the setting of the process.
 class OneBlasThread {
  public:
   OneBlasThread() {

@@ -248,14 +248,15 @@ std::optional<Eigenpairs> largest_inverse_eigenpairs(const LinearSolver& solver,
   BlockLanczos lanczos(solver, n, threads);
   // Surfaces need 4 count to 5 count columns.
   for (Offset next_check = 7 * count / 2 + 3 * b;;) {
-    if (lanczos.size() + 2 * b > n) return std::nullopt;
     progress.step("eigenvectors",
                   std::min(0.9, static_cast<double>(lanczos.size()) / static_cast<double>(4 * count + 8 * b)));
     lanczos.step();
-    if (lanczos.size() < next_check) continue;
+    const bool is_last = lanczos.size() + 2 * b > n;
+    if (lanczos.size() < next_check && !is_last) continue;
     const auto found = lanczos.largest(count);
     if (found.residual <= residual_tolerance)
       return Eigenpairs{{found.mu.begin(), found.mu.end()}, lanczos.vectors(found.Y)};
+    if (is_last || !std::isfinite(found.residual)) return std::nullopt;
     const double blocks = std::log(found.residual / residual_tolerance) / std::log(gain_of_a_block);
     next_check = lanczos.size() + b * std::max<Offset>(1, static_cast<Offset>(std::min(blocks, 1e3)));
   }

@@ -92,8 +92,8 @@ Eigenpairs dense_eigenpairs(const SparseUpper& K, Offset count) {
           {vectors.data(), vectors.data() + vectors.size()}};
 }
 
-/// Matrices of up to this size are solved densely, which is faster there: Lanczos needs a basis of about this size.
-Offset dense_size(Offset count) { return 3 * count + 4 * lanczos_block; }
+/// Matrices of up to this size are solved densely: Lanczos needs a basis of about this size.
+Offset dense_size(Offset count) { return 4 * count + 6 * lanczos_block; }
 
 /// The smallest eigenvalues of M^-1/2 L M^-1/2 on one component, and their orthonormal eigenvectors.
 Eigenpairs part_eigenpairs(const ScaledPart& part, Offset count, unsigned threads, const Progress& progress) {

@@ -1,6 +1,6 @@
 /// \file
-/// Vectorized elimination of columns in a front: products of rows by register tiles of eight doubles times four. Everything is inlined
-/// into its callers, which are compiled for several processors.
+/// Vectorized elimination of columns in a front, by register tiles. Everything is inlined into its callers, which are compiled for several
+/// processors.
 #pragma once
 
 #include <cmath>
@@ -37,7 +37,7 @@ struct Tile {
   [[gnu::always_inline]] void get(int column, int r, Vector* sum) const {
     *sum = straight[column][r];
     if constexpr (W == 2) {
-      const Vector& other = crossed[column][r];
+      const Vector other = crossed[column][r];
       if constexpr (N == 4)
         *sum += Vector{1, -1, 1, -1} * __builtin_shufflevector(other, other, 1, 0, 3, 2);
       else
@@ -55,12 +55,13 @@ struct ColumnBlock {
 
   /// Computes the rows `first` to `last` - 1, in doubles.
   /// @param diagonal  row of the first diagonal entry
-  [[gnu::always_inline]] void rows(Offset diagonal, Offset first, Offset last) const {
+  /// @param lowest    first row that no other thread writes
+  [[gnu::always_inline]] void rows(Offset diagonal, Offset first, Offset last, Offset lowest) const {
     Offset r = first;
     for (; r + tile_rows <= last; r += tile_rows) tile<2>(diagonal, r);
     for (; r + 4 <= last; r += 4) tile<1>(diagonal, r);
     if (r == last) return;
-    if (last >= 4) return tile<1>(diagonal, last - 4, r - (last - 4));
+    if (last - lowest >= 4) return tile<1>(diagonal, last - 4, r - (last - 4));
     for (; r < last; r += W)
       for (int c = 0; c < J; ++c) one(diagonal, r, c);
   }
@@ -87,7 +88,7 @@ struct ColumnBlock {
       }
   }
 
-  /// Computes one entry, for fronts with less than four doubles per column.
+  /// Computes one entry, where there are fewer than four doubles per column.
   [[gnu::always_inline]] void one(Offset diagonal, Offset r, int c) const {
     double re = 0, im = 0;
     for (Offset k = 0; k < eliminated; ++k) {
@@ -149,7 +150,7 @@ template <int W, int J, bool Pivots>
 [[gnu::always_inline]] inline int eliminate_columns(double* L, Offset stride, Offset j, Offset first, Offset last) {
   ColumnBlock<W, J, true> block{L, stride, j, {}};
   for (int c = 0; c < J; ++c) block.target[c] = L + (j + c) * stride;
-  block.rows(j * W, Pivots ? j * W : first, last);
+  block.rows(j * W, Pivots ? j * W : first, last, Pivots ? 0 : first);
   return finish_columns<W, J, Pivots>(L, stride, j, first, last);
 }
 

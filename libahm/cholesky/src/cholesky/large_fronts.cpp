@@ -21,7 +21,9 @@ constexpr Offset rows_at_once = 128;
 
 /// The rows below a panel, in slabs of `height` doubles, one column of the panel after another. The last slab is filled with zeros.
 struct Slabs {
-  Offset height, rows, depth;  ///< doubles per column of a slab, and of all slabs; columns of the panel
+  Offset height;  ///< doubles per column of a slab
+  Offset rows;    ///< doubles per column below the panel
+  Offset depth;   ///< columns of the panel
   std::unique_ptr<double[]> numbers;
 
   /// First number of a row, in doubles. Rows of one slab are contiguous.
@@ -72,7 +74,7 @@ struct Loops {
   }
 
   /// Subtracts the products of the panel from the columns begin to end - 1, on and below the diagonal.
-  /// @param begin  multiple of a slab's rows
+  /// @param begin  begin * W is a multiple of `height`
   [[gnu::always_inline]] static void subtract_group(const Slabs& slabs, const LaterColumns& later, Offset begin,
                                                     Offset end) {
     for (Offset r = begin * W; r < slabs.rows; r += height)
@@ -109,7 +111,8 @@ Offset factor_large_front(double* L, Offset rows, Offset columns, double* update
   Slabs slabs{height, 0, 0,
               std::make_unique_for_overwrite<double[]>(
                   static_cast<std::size_t>((stride + height) * std::min(columns, panel_columns)))};
-  // The first panel has the odd number of columns, so that slabs begin at the first row below the supernode.
+  // The first panel takes the remainder. Then the number of own columns after a panel is a multiple of the others' size, and a slab begins
+  // at the first row below the supernode: no tile crosses from own columns to the update matrix.
   Offset begin = 0, end = (columns - 1) % panel_columns + 1;
   for (; begin < columns; begin = end, end += panel_columns) {
     double* const panel = L + begin * (stride + W);

@@ -22,7 +22,7 @@ template <int W, int J>
   const Offset below = rows - columns * W;
   ColumnBlock<W, J, false> block{L, rows, columns, {}};
   for (int a = 0; a < J; ++a) block.target[a] = update + (c + a) * below - columns * W;
-  block.rows((columns + c) * W, (columns + c) * W, rows);
+  block.rows((columns + c) * W, (columns + c) * W, rows, 0);
 }
 
 /// @param rows  doubles per column

@@ -21,7 +21,7 @@ using Four = Lanes<4>::Type;
 
 /// Register sets that loops are compiled for.
 enum class Registers {
-  plain,  ///< of any processor
+  plain,  ///< no AVX: any processor
   avx2,
   avx512
 };
@@ -55,7 +55,8 @@ template <class Body>
 }  // namespace detail
 
 /// Calls body(N): compiled for AVX-512 (N = 8) or AVX2 (N = 4) if the processor has it, otherwise for any processor (N = 4). N is a
-/// `std::integral_constant`. All that `body` calls is compiled with it. Results differ between processors by rounding.
+/// `std::integral_constant`. GCC also compiles all that `body` calls for these registers, clang what is `always_inline`. Results differ
+/// between processors by rounding.
 template <class Body>
 auto in_widest_registers(const Body& body) {
 #ifdef __x86_64__

@@ -266,7 +266,7 @@ class BlockSolve {
       sums.resize(groups_->top_rows * width);
       for (const auto& [first, last, end] : subtrees)
         forward(first, last, [&, own_end = end](Offset k) {
-          return k < own_end ? row(k) : sums.data() + groups_->place[k] * width;
+          return k < own_end ? row(k) : sums.data() + Offset{groups_->place[k]} * width;
         });
     });
     Offset place = 0;
