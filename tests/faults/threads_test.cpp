@@ -17,6 +17,7 @@
 #include "ahm/polymesh/polygon_mesh_surface.hpp"
 #include "ahm/surface/exact/exact_geodesics.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
+#include "cholesky/multifrontal.hpp"
 
 namespace ahm::test {
 namespace {
@@ -156,6 +157,20 @@ TEST(Threads, SolveOnDifferentPatches) {
   const std::vector<std::span<const Vertex>> regions(sources.size(), std::span<const Vertex>(everything).first(200));
   const auto numbers = [&](unsigned threads) {
     return local_coordinates(surface.graph(), sources, regions, {.threads = threads});
+  };
+  EXPECT_TRUE(same(numbers(4), numbers(1)));
+}
+
+/// The last block of rows below the columns has a single row.
+TEST(Threads, ShareTheRowsOfALargeFront) {
+  static constexpr Offset rows = 686, columns = 45;
+  ASSERT_TRUE(is_large_front(rows, columns));
+  const auto numbers = [](unsigned threads) {
+    Numbers L(rows * columns, 0.01), update((rows - columns) * (rows - columns), 0.0);
+    for (Offset j = 0; j < columns; ++j) L[j * (rows + 1)] = 2;
+    EXPECT_EQ(factor_front<1>(L.data(), rows, columns, update.data(), threads), columns);
+    append(update, std::span(L).last(rows));
+    return update;
   };
   EXPECT_TRUE(same(numbers(4), numbers(1)));
 }
