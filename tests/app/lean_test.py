@@ -11,6 +11,9 @@ import sys
 import tempfile
 import unittest
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+import latitude_mesh
+
 program, other = None, None
 SYSTEM = {"libc.so.6", "libm.so.6", "libgcc_s.so.1", "libstdc++.so.6", "libpthread.so.0", "ld-linux-x86-64.so.2", "ld-linux-aarch64.so.1"}
 
@@ -23,16 +26,7 @@ def write_mesh(path, n):
         points += [(math.sin(theta) * math.cos(math.pi * j / n), 0.8 * math.sin(theta) * math.sin(math.pi * j / n), 1.2 * math.cos(theta))
                    for j in range(2 * n)]
     points.append((0, 0, -1.2))
-    at = lambda i, j: 0 if i == 0 else len(points) - 1 if i == n else 1 + (i - 1) * 2 * n + j % (2 * n)
-    faces = []
-    for i in range(n):
-        for j in range(2 * n):
-            if i > 0:
-                faces.append((at(i, j), at(i + 1, j), at(i, j + 1)))
-            if i < n - 1:
-                faces.append((at(i, j + 1), at(i + 1, j), at(i + 1, j + 1)))
-    rows = [f"{x!r} {y!r} {z!r}" for x, y, z in points] + [f"3 {a} {b} {c}" for a, b, c in faces]
-    path.write_text("\n".join(["OFF", f"{len(points)} {len(faces)} 0", *rows, ""]))
+    latitude_mesh.write_off(path, points, latitude_mesh.faces_of(n))
 
 
 def write_cloud(path, n):

@@ -16,6 +16,9 @@ import sys
 import time
 import unittest
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+import latitude_mesh
+
 try:
     from selenium import webdriver
     from selenium.webdriver.chrome.service import Service
@@ -31,27 +34,14 @@ options = None
 
 def bumpy_sphere(n=40):
     """Triangles of a sphere with bumps: vertices and faces."""
-    points, faces = [(0.0, 0.0, 1.2)], []
+    points = [(0.0, 0.0, 1.2)]
     for i in range(1, n):
         for j in range(2 * n):
             theta, phi = math.pi * i / n, math.pi * j / n
             r = 1 + 0.15 * math.sin(3 * theta) * math.cos(2 * phi) + 0.2 * math.cos(theta)
             points.append((r * math.sin(theta) * math.cos(phi), r * math.sin(theta) * math.sin(phi), r * math.cos(theta)))
     points.append((0.0, 0.0, -0.8))
-    at = lambda i, j: 0 if i == 0 else len(points) - 1 if i == n else 1 + (i - 1) * 2 * n + j % (2 * n)
-    for i in range(n):
-        for j in range(2 * n):
-            if i > 0:
-                faces.append((at(i, j), at(i + 1, j), at(i, j + 1)))
-            if i < n - 1:
-                faces.append((at(i, j + 1), at(i + 1, j), at(i + 1, j + 1)))
-    return points, faces
-
-
-def write_off(path, points, faces):
-    lines = ["OFF", f"{len(points)} {len(faces)} 0"]
-    lines += [" ".join(repr(x) for x in p) for p in points] + ["3 %d %d %d" % f for f in faces]
-    path.write_text("\n".join(lines) + "\n")
+    return points, latitude_mesh.faces_of(n)
 
 
 def rows_of(path):
@@ -80,7 +70,7 @@ class Page(unittest.TestCase):
         (cls.work / "downloads").mkdir(parents=True)
         cls.points, cls.faces = bumpy_sphere()
         cls.mesh, cls.cloud = cls.work / "bumps.off", cls.work / "bumps.xyz"
-        write_off(cls.mesh, cls.points, cls.faces)
+        latitude_mesh.write_off(cls.mesh, cls.points, cls.faces)
         cls.cloud.write_text("".join("%r %r %r\n" % p for p in cls.points))
         chrome = webdriver.ChromeOptions()
         chrome.binary_location = options.chromium
@@ -336,7 +326,7 @@ class Page(unittest.TestCase):
     def test_long_numbers_are_whole(self):
         points, faces = bumpy_sphere(20)
         path = self.work / "far.off"
-        write_off(path, [tuple(-123456.789 + 1e-3 * x for x in p) for p in points], faces)
+        latitude_mesh.write_off(path, [tuple(-123456.789 + 1e-3 * x for x in p) for p in points], faces)
         self.open(path, "--source", 0)
         row, x, y = self.visible_rows(12)[5]
         self.at(x, y).perform()

@@ -92,7 +92,6 @@ class SharedVertices {
           all.push_back(row);
         }
   }
-  bool empty() const { return rows_.empty(); }
   /// The rows of a vertex, in ascending order; empty if it has at most one.
   std::span<const Row> operator[](Vertex vertex) const {
     const auto found = rows_.find(vertex.index);

@@ -157,13 +157,10 @@ class Levels {
     for (const double value : values_)  // -1 where the seed does not reach
       band.push_back(std::isnan(value) ? -1 : std::ranges::upper_bound(thresholds_, value) - thresholds_.begin());
     detail::DisjointSets sets(values_.size());
-    const auto for_each_side = [&](const auto& visit) {
-      for (std::size_t h = 0; h < mesh_.twin.size(); ++h) {
-        const Index a = mesh_.tail(static_cast<Half>(h)), b = mesh_.head(static_cast<Half>(h));
-        if (band[to_size(a)] == band[to_size(b)]) visit(h, a, b);
-      }
-    };
-    for_each_side([&](std::size_t, Index a, Index b) { sets.join(a, b); });
+    for (std::size_t h = 0; h < mesh_.twin.size(); ++h) {
+      const Index a = mesh_.tail(static_cast<Half>(h)), b = mesh_.head(static_cast<Half>(h));
+      if (band[to_size(a)] == band[to_size(b)]) sets.join(a, b);
+    }
     std::vector<Index> part;
     for (std::size_t p = 0; p < values_.size(); ++p) part.push_back(sets.root(static_cast<Index>(p)));
     for (std::size_t h = 0; h < mesh_.twin.size(); ++h)
@@ -213,8 +210,9 @@ class Levels {
       return;
     }
     const auto passed = std::ranges::count_if(chain, [&](const Ring* ring) { return ring->level <= riser.level(); });
-    join(chain.first(to_size(std::min(passed, std::ssize(chain) - 1))));
-    join(chain.subspan(to_size(std::min(passed, std::ssize(chain) - 1))));
+    const std::size_t below = to_size(std::min(passed, std::ssize(chain) - 1));
+    join(chain.first(below));
+    join(chain.subspan(below));
   }
 
   const FaceMesh& mesh_;

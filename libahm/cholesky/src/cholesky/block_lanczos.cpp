@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "ahm/util/parallel.hpp"
-#include "cholesky/tall_products.hpp"
 
 namespace ahm {
 namespace {
@@ -22,7 +21,6 @@ constexpr double gain_of_a_block = 5;     ///< about how much one more block red
 constexpr Offset blocks_at_once = 64;     ///< blocks of rows per task
 constexpr Offset columns_of_panel = 128;  ///< columns of the basis in one piece of memory
 constexpr Offset b = lanczos_block;
-static_assert(b == block_columns);
 
 /// An n x b matrix, column major.
 using Block = std::vector<double>;

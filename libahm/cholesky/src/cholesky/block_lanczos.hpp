@@ -6,11 +6,12 @@
 #include <span>
 
 #include "ahm/cholesky/eigenpairs.hpp"
+#include "cholesky/tall_products.hpp"
 
 namespace ahm {
 
-/// Columns of a block: as many as `CholeskyFactor::solve` solves at once.
-inline constexpr Offset lanczos_block = 16;
+/// Columns of a block. `CholeskyFactor::solve` solves as many at once.
+inline constexpr Offset lanczos_block = block_columns;
 
 /// The `count` largest eigenvalues of K^-1 in descending order, and their orthonormal eigenvectors.
 /// @param solver  solver of K

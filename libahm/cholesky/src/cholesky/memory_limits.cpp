@@ -71,9 +71,4 @@ double address_space_left() {
   return std::isinf(pages) ? limit : limit - pages * static_cast<double>(sysconf(_SC_PAGE_SIZE));
 }
 
-bool address_space_is_limited() {
-  static const bool strict = number_in("/proc/sys/vm/overcommit_memory") == 2;
-  return strict || std::isfinite(resource_limit());
-}
-
 }  // namespace ahm

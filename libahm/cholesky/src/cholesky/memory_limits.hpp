@@ -23,8 +23,4 @@ double address_space_left();
 /// Address space of each thread of a solve, without its arrays: a stack and an arena of the allocator. Bytes.
 inline constexpr double bytes_per_thread = 80e6;
 
-/// Whether an allocation may fail before memory is used up: because of a `resource_limit`, or because the system does not overcommit
-/// memory (vm.overcommit_memory = 2).
-bool address_space_is_limited();
-
 }  // namespace ahm

@@ -14,6 +14,5 @@ double control_group_limit(const std::string&, const std::string&) { return infi
 double physical_memory() { return sizeof(void*) == 4 ? 0x1p32 : infinity; }
 double resource_limit() { return infinity; }
 double address_space_left() { return infinity; }
-bool address_space_is_limited() { return false; }
 
 }  // namespace ahm

@@ -197,7 +197,7 @@ void backward_anywhere(const Supernode<W>& s, double* y) {
 template <int W, int K>
 SupernodeKernels<W> supernode_kernels() {
 #ifdef __x86_64__
-  if (__builtin_cpu_supports("avx2")) return {forward_avx2<W, K>, backward_avx2<W, K>};
+  if (widest_registers() != Registers::plain) return {forward_avx2<W, K>, backward_avx2<W, K>};
 #endif
   return {forward_anywhere<W, K>, backward_anywhere<W, K>};
 }

@@ -11,6 +11,14 @@
 namespace ahm {
 namespace {
 
+/// Calls body(group, its subtrees) for every group, on several threads.
+template <class Body>
+void for_each_group(const SolveGroups& groups, unsigned threads, const Body& body) {
+  detail::parallel_chunks(groups.count(), 1, threads, [&](Offset group, Offset) {
+    body(group, std::span(groups.subtrees).subspan(groups.begin[group], groups.begin[group + 1] - groups.begin[group]));
+  });
+}
+
 /// Right-hand sides in elimination order, column major; real (W = 1) or complex (W = 2).
 template <int W>
 class PermutedColumns {
@@ -77,18 +85,10 @@ class NarrowSolve {
   }
 
   void solve_by_groups() {
-    const auto for_each_group = [&](const auto& body) {
-      detail::parallel_chunks(groups_->count(), 1, threads_, [&](Offset group, Offset) {
-        Buffer y = rows(longest_);
-        body(group,
-             std::span(groups_->subtrees)
-                 .subspan(groups_->begin[group], groups_->begin[group + 1] - groups_->begin[group]),
-             y);
-      });
-    };
     const auto top_rows = static_cast<Offset>(groups_->top_rows);
     std::vector<Buffer> top_sums(static_cast<std::size_t>(groups_->count()));
-    for_each_group([&](Offset group, const auto& subtrees, Buffer& y) {
+    for_each_group(*groups_, threads_, [&](Offset group, const auto& subtrees) {
+      Buffer y = rows(longest_);
       Buffer& sums = top_sums[group] = rows(top_rows);
       for (const auto& [first, last, end] : subtrees)
         for (Offset s = first; s < last; ++s)
@@ -105,7 +105,8 @@ class NarrowSolve {
     }
     for (const Offset s : groups_->top) forward(Supernode<W>(L_, s), y, target_in_x());
     for (auto s = groups_->top.rbegin(); s != groups_->top.rend(); ++s) backward(Supernode<W>(L_, *s), y);
-    for_each_group([&](Offset, const auto& subtrees, Buffer& own_y) {
+    for_each_group(*groups_, threads_, [&](Offset, const auto& subtrees) {
+      Buffer own_y = rows(longest_);
       for (auto tree = subtrees.rbegin(); tree != subtrees.rend(); ++tree)
         for (Offset s = tree->last; s-- > tree->first;) backward(Supernode<W>(L_, s), own_y);
     });
@@ -254,14 +255,8 @@ class BlockSolve {
   }
 
   void solve_by_groups() {
-    const auto for_each_group = [&](const auto& body) {
-      detail::parallel_chunks(groups_->count(), 1, threads_, [&](Offset group, Offset) {
-        body(group, std::span(groups_->subtrees)
-                        .subspan(groups_->begin[group], groups_->begin[group + 1] - groups_->begin[group]));
-      });
-    };
     std::vector<std::vector<double>> top_sums(static_cast<std::size_t>(groups_->count()));
-    for_each_group([&](Offset group, const auto& subtrees) {
+    for_each_group(*groups_, threads_, [&](Offset group, const auto& subtrees) {
       std::vector<double>& sums = top_sums[group];
       sums.resize(groups_->top_rows * width);
       for (const auto& [first, last, end] : subtrees)
@@ -277,7 +272,7 @@ class BlockSolve {
       forward(s, s + 1, [this](Offset k) { return row(k); });
     }
     for (auto s = groups_->top.rbegin(); s != groups_->top.rend(); ++s) backward(*s, *s + 1);
-    for_each_group([&](Offset, const auto& subtrees) {
+    for_each_group(*groups_, threads_, [&](Offset, const auto& subtrees) {
       for (auto tree = subtrees.rbegin(); tree != subtrees.rend(); ++tree) backward(tree->first, tree->last);
     });
   }

@@ -17,10 +17,10 @@
 #include "ahm/util/text.hpp"
 #include "ahm/util/vec.hpp"
 #include "maps/affine_heat.hpp"
-#include "maps/jump.hpp"
 #include "maps/local_map_parts.hpp"
 #include "maps/one_rings.hpp"
 #include "maps/patch_maps.hpp"
+#include "maps/vector_quality.hpp"
 
 namespace ahm {
 namespace {
@@ -312,10 +312,9 @@ class Worker {
         for (std::size_t a = 0; a < d_; ++a) apart = std::hypot(apart, phi(j)[a] - phi(here)[a]);
         return apart;
       };
-      const Vertex vertex(patch.vertices[to_size(k)]);
-      entries.quality.push_back(quality_of(std::abs(length(phi(k)) - from_source),
-                                           jump_at(patch.graph, k, length_in_map), from_source,
-                                           std::min(h, mean_edge(graph_, std::span(&vertex, 1)))));
+      entries.quality.push_back(quality_of(graph_, Vertex(patch.vertices[to_size(k)]),
+                                           std::abs(length(phi(k)) - from_source),
+                                           jump_at(patch.graph, k, length_in_map), from_source, h));
     }
   }
 

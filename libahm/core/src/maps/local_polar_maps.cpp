@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "ahm/error.hpp"
-#include "ahm/graph/components.hpp"
 #include "ahm/maps/local_maps.hpp"
 #include "ahm/maps/straight_line.hpp"
 #include "ahm/util/memory.hpp"
@@ -18,8 +17,8 @@
 #include "ahm/util/vec.hpp"
 #include "maps/affine_heat.hpp"
 #include "maps/carried_axes.hpp"
-#include "maps/jump.hpp"
 #include "maps/local_map_parts.hpp"
+#include "maps/vector_quality.hpp"
 
 namespace ahm {
 namespace {
@@ -117,8 +116,8 @@ class Collector {
     };
     const double error = distance > 0 ? distance * front.direction_error(v) : 0;
     const double h = graph_.length_unit() * graph_.mean_edge_length();
-    return quality_of(std::isfinite(error) ? error : 0, jump_at(graph_, v.index, length_in_map), distance,
-                      std::min(h, mean_edge(graph_, std::span(&v, 1))));
+    return quality_of(graph_, v, std::isfinite(error) ? error : 0, jump_at(graph_, v.index, length_in_map), distance,
+                      h);
   }
 
   static Vec2 coordinates(const Wavefront& front, Vertex v) {

@@ -13,7 +13,7 @@
 #include "ahm/util/vec.hpp"
 #include "maps/affine_heat.hpp"
 #include "maps/carried_axes.hpp"
-#include "maps/jump.hpp"
+#include "maps/vector_quality.hpp"
 
 namespace ahm {
 namespace {

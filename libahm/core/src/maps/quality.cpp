@@ -14,7 +14,6 @@
 #include "ahm/util/text.hpp"
 #include "ahm/util/vec.hpp"
 #include "heat/component_scales.hpp"
-#include "maps/jump.hpp"
 
 namespace ahm {
 namespace {
@@ -102,7 +101,7 @@ std::vector<double> quality_beside(const TangentGraph& graph, const LogMap& map,
       if (map.method() == Method::polar) return map.error_estimate()[i];
       return error_of_heat(map, front, vertex.index, std::span(vectors).subspan(i * dimension, dimension), d, h);
     };
-    quality[i] = quality_of(error(), map.spread()[i], d, std::min(h, mean_edge(graph, std::span(&vertex, 1))));
+    quality[i] = quality_of(graph, vertex, error(), map.spread()[i], d, h);
   });
   return quality;
 }

@@ -1,10 +1,12 @@
 /// \file
-/// Edges that a map stretches: they cross the cut locus. And the quality of a vector with a known error.
+/// The quality of one vector of a map: from its error, and from the edges that the map stretches because they cross the cut locus.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
+#include "ahm/graph/components.hpp"
 #include "ahm/graph/tangent_graph.hpp"
 #include "ahm/util/small_math.hpp"
 
@@ -26,11 +28,13 @@ double jump_at(const TangentGraph& graph, Index vertex, const Length& length_in_
   return jump;
 }
 
-/// The quality of `map_quality`. All lengths are in world units.
-/// @param distance  of the vertex from the source
-/// @param edge      of the vertex; shorter distances count as this one
-inline double quality_of(double error, double spread, double distance, double edge) {
+/// The quality of `map_quality` at a vertex. All lengths are in world units.
+/// @param distance  of the vertex from the source. Below an edge of the vertex, and below h, it counts as the shorter of both
+/// @param h         mean edge length
+inline double quality_of(const TangentGraph& graph, Vertex vertex, double error, double spread, double distance,
+                         double h) {
   constexpr double doubtful_error = 0.1;  // relative error at which the quality is 0.5
+  const double edge = std::min(h, mean_edge(graph, std::span(&vertex, 1)));
   const double doubt = std::hypot(error, spread / 3) / std::max(distance, edge) / doubtful_error;
   return 1 / (1 + doubt * doubt);
 }
