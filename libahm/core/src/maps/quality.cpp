@@ -14,6 +14,7 @@
 #include "ahm/util/text.hpp"
 #include "ahm/util/vec.hpp"
 #include "heat/component_scales.hpp"
+#include "maps/vector_quality.hpp"
 
 namespace ahm {
 namespace {
