@@ -4,11 +4,10 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <unordered_map>
+#include <numeric>
 
 #include "ahm/error.hpp"
 #include "ahm/util/small_math.hpp"
-#include "ahm/util/text.hpp"
 #include "ahm/util/vec.hpp"
 
 namespace ahm {
@@ -22,8 +21,9 @@ Vec3 corner_position(const FaceMesh& mesh, Index face, std::size_t corner) {
   return mesh.points[static_cast<std::size_t>(mesh.faces[static_cast<std::size_t>(face)][corner])];
 }
 
-/// Splits all sides longer than `longest` once. @return whether there was one
-bool split_long_sides(FaceMesh& mesh, double longest, std::vector<Index>& parents) {
+/// Splits all sides longer than a limit once, so that as few parts as possible are at most `longest`.
+/// @return whether there was one
+bool split_long_sides(FaceMesh& mesh, double limit, double longest, std::vector<Index>& parents) {
   std::vector<Index> middle(3 * mesh.size(), -1);
   bool any = false;
   for (std::size_t h = 0; h < middle.size(); ++h) {
@@ -35,9 +35,11 @@ bool split_long_sides(FaceMesh& mesh, double longest, std::vector<Index>& parent
     }
     const Vec3 a = mesh.points[static_cast<std::size_t>(mesh.tail(half))],
                b = mesh.points[static_cast<std::size_t>(mesh.head(half))];
-    if (!(distance(a, b) > longest)) continue;
+    const double length = distance(a, b);
+    if (!(length > limit)) continue;
+    const double parts = std::ceil(length / longest), share = std::ceil(parts / 2) / parts;
     middle[h] = static_cast<Index>(mesh.points.size());
-    mesh.points.push_back(0.5 * (a + b));
+    mesh.points.push_back((1 - share) * a + share * b);
     mesh.vertices.push_back(-1);
     any = true;
   }
@@ -89,10 +91,10 @@ bool split_long_sides(FaceMesh& mesh, double longest, std::vector<Index>& parent
 
 }  // namespace
 
-FaceMesh refined(const FaceMesh& mesh, double longest, std::vector<Index>* parents) {
-  FaceMesh result = mesh;
-  std::vector<Index> of(mesh.size());
-  for (std::size_t f = 0; f < of.size(); ++f) of[f] = static_cast<Index>(f);
+Refinement refined(const FaceMesh& mesh, double longest) {
+  Refinement result{mesh, std::vector<Index>(mesh.size()), {}};
+  std::iota(result.face.begin(), result.face.end(), 0);
+  std::iota(result.mesh.vertices.begin(), result.mesh.vertices.end(), 0);
   double longest_now = 0;
   for (std::size_t h = 0; h < 3 * mesh.size(); ++h)
     longest_now = std::max(longest_now, distance(mesh.points[to_size(mesh.tail(static_cast<Half>(h)))],
@@ -100,9 +102,11 @@ FaceMesh refined(const FaceMesh& mesh, double longest, std::vector<Index>* paren
   // Long sides first, so that needles are cut across.
   for (double limit = longest_now; limit > longest;) {
     limit = std::max(limit / 2, longest);
-    while (split_long_sides(result, limit, of)) continue;
+    while (split_long_sides(result.mesh, limit, longest, result.face)) continue;
   }
-  if (parents != nullptr) *parents = std::move(of);
+  result.point = result.mesh.vertices;
+  for (Index& vertex : result.mesh.vertices)
+    if (vertex >= 0) vertex = mesh.vertices[to_size(vertex)];
   return result;
 }
 

@@ -13,10 +13,16 @@
 
 namespace ahm {
 
-/// A mesh of the same shape with sides of at most `longest`. The faces of `parents` are the parents of the new ones.
-/// @param parents  receives the face of `mesh` that contains each new face; may be null
+/// A mesh of the same shape as a coarser one.
+struct Refinement {
+  FaceMesh mesh;
+  std::vector<Index> face;   ///< per face: the coarse face that contains it, with the same orientation
+  std::vector<Index> point;  ///< per point: the same point of the coarse mesh; -1: none
+};
+
+/// A mesh of the same shape with sides of at most `longest`.
 /// @throws ResourceExhausted (more than 2^26 faces)
-FaceMesh refined(const FaceMesh& mesh, double longest, std::vector<Index>* parents = nullptr);
+Refinement refined(const FaceMesh& mesh, double longest);
 
 /// The part of a mesh with some of its faces. @param kept  one per face
 FaceMesh part_of(const FaceMesh& mesh, const std::vector<bool>& kept);

@@ -118,8 +118,8 @@ double double_share(const std::vector<PassPoint>& points) {
 
 ToolPathMeasures tool_path_measures(const Surface& surface, const ToolPath& path, const ToolPathRegion& region,
                                     double samples) {
-  constexpr double longest = 0.5, step = 0.1;
-  const PathDomain domain(region_mesh(surface, region, path.spacing, longest));
+  constexpr double step = 0.1;
+  const PathDomain domain(region_mesh(surface, region, path.spacing));
   ToolPathMeasures result;
   for (std::size_t f = 0; f < domain.mesh.size(); ++f) result.area += domain.mesh.area(static_cast<Index>(f));
   AreaSamples spread(samples);

@@ -40,36 +40,6 @@ MeshPoint between(const MeshPoint& a, const MeshPoint& b, double t) {
 std::size_t segments(const MeshCurve& curve) { return curve.faces.size(); }
 const MeshPoint& after(const MeshCurve& curve, std::size_t k) { return curve.points[(k + 1) % curve.points.size()]; }
 
-/// Distance from curves at the points of a mesh, with the angle at which the shortest path arrives.
-struct Front {
-  std::vector<double> distance;  ///< infinity: not reached
-  /// Angle of the direction back along the path, around the point, from the right side of its first corner; NaN: none.
-  std::vector<double> back;
-};
-
-Front front(const exact::PolyhedralSurface& surface, const std::vector<MeshPoint>& sources, double radius,
-            const Progress& progress) {
-  exact::ExactOptions options;
-  options.radius = radius;
-  options.progress = progress;
-  const exact::ExactMap map = exact::exact_map(surface, sources, options);
-  Front result;
-  for (Index v = 0; v < surface.vertex_count(); ++v) {
-    const bool ok = map.status(Vertex(v)) == Status::ok;
-    result.distance.push_back(ok ? map.distance(Vertex(v)) : infinity);
-    const exact::Arrival& arrival = map.arrival(Vertex(v));
-    double back = nan;
-    if (ok && arrival.half >= 0) {
-      const exact::HalfRecord side = surface.record(arrival.half);
-      const Vec2 apex{side.apex_x, side.apex_y}, to_tail = -apex, to_origin = arrival.from - apex;
-      back = surface.turned(Corner{detail::previous(arrival.half), true}) +
-             std::atan2(cross(to_tail, to_origin), dot(to_tail, to_origin));
-    }
-    result.back.push_back(back);
-  }
-  return result;
-}
-
 /// A point of a side at which two fronts meet.
 struct Meeting {
   double t = nan;       ///< place on the side, from its tail; NaN: none
@@ -424,7 +394,7 @@ MeshCurve joined_curve(const PathDomain& domain, std::span<const MeshPoint> poin
   return curve;
 }
 
-std::vector<PassCurve> make_passes(const PathDomain& domain, const std::vector<MeshCurve>& seeds, double phase,
+std::vector<PassCurve> make_passes(const FineDomain& domain, const std::vector<MeshCurve>& seeds, double phase,
                                    bool spiral, const Progress& progress) {
   std::vector<MeshPoint> sources;
   std::vector<PassCurve> levels;
@@ -432,7 +402,7 @@ std::vector<PassCurve> make_passes(const PathDomain& domain, const std::vector<M
     add_sources(domain.mesh, seed, seed_step, sources);
     if (phase == 0) levels.push_back({seed, PassOrigin::seed, 0});
   }
-  const Front from_seed = front(domain.surface, sources, infinity, progress);
+  const Front from_seed = front(domain, sources, infinity, progress);
   double farthest = 0;
   std::vector<double> values = from_seed.distance;
   for (double& d : values) {
@@ -460,7 +430,7 @@ std::vector<PassCurve> make_passes(const PathDomain& domain, const std::vector<M
   if (passes.empty()) return passes;
 
   // Gaps that remain: where the distance from all passes is larger than the largest gap.
-  const Front from_passes = front(domain.surface, sources_of(domain.mesh, passes), 1.5, progress);
+  const Front from_passes = front(domain, sources_of(domain.mesh, passes), 1.5, progress);
   std::vector<PassCurve> rest = CutLocus(domain, from_passes).curves([&](const Meeting& m) {
     return m.slope < max_slope && m.distance > max_gap;
   });

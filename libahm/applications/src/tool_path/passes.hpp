@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "ahm/applications/tool_path.hpp"
-#include "tool_path/fine_mesh.hpp"
+#include "tool_path/front.hpp"
 
 namespace ahm {
 
@@ -17,18 +17,6 @@ struct PassCurve {
   double distance = 0;  ///< from the seed; on cut loci, boundaries and spirals the mean
 };
 
-/// The mesh to cover, and its exact geodesics.
-struct PathDomain {
-  explicit PathDomain(FaceMesh triangles) : mesh(std::move(triangles)), surface(polyhedral(mesh)) {}
-  PathDomain(const PathDomain&) = delete;
-  PathDomain& operator=(const PathDomain&) = delete;
-
-  FaceMesh mesh;
-  exact::PolyhedralSurface surface;
-};
-
-/// Longest side of the fine mesh.
-inline constexpr double longest_side = 0.4;
 /// Shorter passes are left out.
 inline constexpr double shortest_pass = 0.5;
 /// Pieces of curves that one source of an exact map represents. At distance d from a straight curve the error is at most
@@ -52,7 +40,7 @@ std::vector<PassCurve> spiral_levels(const FaceMesh& mesh, std::span<const doubl
 /// All passes around seed curves.
 /// @param phase   distance of the first pass from the seed: 0 or 0.5
 /// @param spiral  joins passes to spirals
-std::vector<PassCurve> make_passes(const PathDomain& domain, const std::vector<MeshCurve>& seeds, double phase,
+std::vector<PassCurve> make_passes(const FineDomain& domain, const std::vector<MeshCurve>& seeds, double phase,
                                    bool spiral, const Progress& progress);
 
 }  // namespace ahm

@@ -288,7 +288,7 @@ Index count_uncovered(const PathDomain& domain, const std::vector<MeshCurve>& se
 
 }  // namespace
 
-FaceMesh region_mesh(const Surface& surface, const ToolPathRegion& region, double spacing, double longest) {
+FaceMesh region_mesh(const Surface& surface, const ToolPathRegion& region, double spacing) {
   FaceMesh mesh = face_mesh(surface);
   for (Vec3& p : mesh.points) p = (1 / spacing) * p;
   const auto keep = [](FaceMesh& of, const std::vector<bool>& kept) {
@@ -331,7 +331,8 @@ FaceMesh region_mesh(const Surface& surface, const ToolPathRegion& region, doubl
                           "choose a smaller spacing");
   };
   check_extent();
-  mesh = refined(mesh, longest);
+  const bool is_cut = !region.enclosures.empty() || region.disc;  // along the sides of short faces
+  mesh = refined(mesh, is_cut ? longest_side : longest_window_side).mesh;
   for (const ToolPathRegion::Enclosure& enclosure : region.enclosures) {
     if (enclosure.points.size() < 3)
       throw InvalidArgument("region_not_enclosed",
@@ -356,7 +357,8 @@ FaceMesh region_mesh(const Surface& surface, const ToolPathRegion& region, doubl
 
 ToolPath tool_path(const Surface& surface, const ToolPathOptions& options) {
   check(options);
-  const PathDomain domain(region_mesh(surface, options.region, options.spacing, longest_side));
+  const PathDomain region(region_mesh(surface, options.region, options.spacing));
+  const FineDomain domain(region);
   const std::vector<MeshCurve> seeds = std::visit(SeedFinder{surface, domain, options.spacing}, options.seed);
   const double phase = std::holds_alternative<BoundarySeed>(options.seed) ? 0.5 : 0;
   ToolPath path;

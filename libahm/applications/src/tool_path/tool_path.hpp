@@ -9,9 +9,9 @@
 
 namespace ahm {
 
-/// The region of a surface as a mesh with short sides, positions divided by the spacing.
+/// The region of a surface as a mesh with sides of at most `longest_window_side`, positions divided by the spacing.
 /// @throws InvalidArgument (as `tool_path`)
-FaceMesh region_mesh(const Surface& surface, const ToolPathRegion& region, double spacing, double longest);
+FaceMesh region_mesh(const Surface& surface, const ToolPathRegion& region, double spacing);
 
 /// The part of a mesh that a closed curve encloses: all parts into which it divides its component, except for the largest.
 /// @param outside  the largest part and the other components instead
