@@ -21,80 +21,120 @@ Vec3 corner_position(const FaceMesh& mesh, Index face, std::size_t corner) {
   return mesh.points[static_cast<std::size_t>(mesh.faces[static_cast<std::size_t>(face)][corner])];
 }
 
-/// Splits all sides longer than a limit once, so that as few parts as possible are at most `longest`.
-/// @return whether there was one
-bool split_long_sides(FaceMesh& mesh, double limit, double longest, std::vector<Index>& parents) {
-  std::vector<Index> middle(3 * mesh.size(), -1);
-  bool any = false;
-  for (std::size_t h = 0; h < middle.size(); ++h) {
-    const auto half = static_cast<Half>(h);
-    const Half twin = mesh.twin[h];
-    if (twin >= 0 && twin < half) {
-      middle[h] = middle[static_cast<std::size_t>(twin)];
-      continue;
-    }
-    const Vec3 a = mesh.points[static_cast<std::size_t>(mesh.tail(half))],
-               b = mesh.points[static_cast<std::size_t>(mesh.head(half))];
-    const double length = distance(a, b);
-    if (!(length > limit)) continue;
-    const double parts = std::ceil(length / longest), share = std::ceil(parts / 2) / parts;
-    middle[h] = static_cast<Index>(mesh.points.size());
-    mesh.points.push_back((1 - share) * a + share * b);
-    mesh.vertices.push_back(-1);
-    any = true;
+/// One step of a refinement: sides are split, and faces are divided at the points on their sides.
+class Splitter {
+ public:
+  explicit Splitter(const Refinement& coarse) : coarse_(coarse), middle_(3 * coarse.mesh.size(), -1) {
+    fine_.mesh.points = coarse.mesh.points;
+    fine_.mesh.vertices = coarse.mesh.vertices;
   }
-  if (!any) return false;
-  std::vector<Triangle> faces;
-  std::vector<Index> of;
-  const auto add = [&](std::size_t parent, Index a, Index b, Index c) {
-    faces.push_back({a, b, c});
-    of.push_back(parents[parent]);
-  };
-  for (std::size_t f = 0; f < mesh.size(); ++f) {
-    std::array<Index, 3> p = mesh.faces[f], m{middle[3 * f], middle[3 * f + 1], middle[3 * f + 2]};
+
+  /// Splits all sides longer than a limit in two, so that as few parts as possible are at most `longest` in the end.
+  /// @return whether there was one
+  bool split_sides(double limit, double longest) {
+    const FaceMesh& mesh = coarse_.mesh;
+    for (std::size_t h = 0; h < middle_.size(); ++h) {
+      const Half twin = mesh.twin[h];
+      if (twin >= 0 && to_size(twin) < h) {
+        middle_[h] = middle_[to_size(twin)];
+        continue;
+      }
+      const Vec3 a = mesh.points[to_size(mesh.tail(static_cast<Half>(h)))],
+                 b = mesh.points[to_size(mesh.head(static_cast<Half>(h)))];
+      const double length = distance(a, b);
+      if (!(length > limit)) continue;
+      const double parts = std::ceil(length / longest), share = std::ceil(parts / 2) / parts;
+      middle_[h] = static_cast<Index>(fine_.mesh.points.size());
+      fine_.mesh.points.push_back((1 - share) * a + share * b);
+      fine_.mesh.vertices.push_back(-1);
+    }
+    return fine_.mesh.points.size() > mesh.points.size();
+  }
+
+  /// @throws ResourceExhausted
+  Refinement divide_faces() && {
+    halves_.assign(middle_.size(), {-1, -1});
+    for (std::size_t f = 0; f < coarse_.mesh.size(); ++f) divide(f);
+    glue_sides();
+    return std::move(fine_);
+  }
+
+ private:
+  void divide(std::size_t f) {
+    std::array<Index, 3> p = coarse_.mesh.faces[f], m{middle_[3 * f], middle_[3 * f + 1], middle_[3 * f + 2]};
     const auto split = std::ranges::count_if(m, [](Index k) { return k >= 0; });
     const auto turn = [&] {
       std::rotate(p.begin(), p.begin() + 1, p.end());
       std::rotate(m.begin(), m.begin() + 1, m.end());
     };
-    if (split == 0) add(f, p[0], p[1], p[2]);
+    std::vector<Triangle>& faces = fine_.mesh.faces;
+    const std::size_t first = faces.size();
+    if (split == 0) faces.push_back(p);
     if (split == 1) {
       while (m[0] < 0) turn();
-      add(f, p[0], m[0], p[2]);
-      add(f, m[0], p[1], p[2]);
+      faces.insert(faces.end(), {{p[0], m[0], p[2]}, {m[0], p[1], p[2]}});
     }
     if (split == 2) {
       while (m[2] >= 0) turn();
-      add(f, m[0], p[1], m[1]);
-      const auto at = [&](Index k) { return mesh.points[static_cast<std::size_t>(k)]; };
-      if (distance(at(p[0]), at(m[1])) < distance(at(m[0]), at(p[2]))) {
-        add(f, p[0], m[0], m[1]);
-        add(f, p[0], m[1], p[2]);
-      } else {
-        add(f, p[0], m[0], p[2]);
-        add(f, m[0], m[1], p[2]);
-      }
+      const auto at = [&](Index k) { return fine_.mesh.points[to_size(k)]; };
+      faces.push_back({m[0], p[1], m[1]});
+      if (distance(at(p[0]), at(m[1])) < distance(at(m[0]), at(p[2])))
+        faces.insert(faces.end(), {{p[0], m[0], m[1]}, {p[0], m[1], p[2]}});
+      else
+        faces.insert(faces.end(), {{p[0], m[0], p[2]}, {m[0], m[1], p[2]}});
     }
-    if (split == 3) {
-      add(f, p[0], m[0], m[2]);
-      add(f, m[0], p[1], m[1]);
-      add(f, m[2], m[1], p[2]);
-      add(f, m[0], m[1], m[2]);
-    }
+    if (split == 3)
+      faces.insert(faces.end(), {{p[0], m[0], m[2]}, {m[0], p[1], m[1]}, {m[2], m[1], p[2]}, {m[0], m[1], m[2]}});
     if (faces.size() > max_faces)
       throw ResourceExhausted("the spacing requires more than 2^26 triangles; enlarge it, or cover a smaller region");
+    fine_.parent.resize(faces.size(), coarse_.parent[f]);
+    fine_.mesh.twin.resize(3 * faces.size(), -1);
+    fine_.mesh.mirrored.resize(3 * faces.size(), 0);
+    for (std::size_t h = 3 * first; h < 3 * faces.size(); ++h) place(f, first, static_cast<Half>(h));
   }
-  parents = std::move(of);
-  mesh = glued(std::move(mesh.points), std::move(faces), std::move(mesh.vertices));
-  return true;
-}
+
+  /// Finds the side of a face that contains a side of one of its parts, or the other part that has this side.
+  void place(std::size_t f, std::size_t first, Half h) {
+    const FaceMesh& fine = fine_.mesh;
+    const Index from = fine.tail(h), to = fine.head(h);
+    for (std::size_t side = 3 * f; side < 3 * f + 3; ++side) {
+      const Index tail = coarse_.mesh.tail(static_cast<Half>(side)), head = coarse_.mesh.head(static_cast<Half>(side));
+      if (from == tail && to == (middle_[side] < 0 ? head : middle_[side])) halves_[side][0] = h;
+      if (from == middle_[side] && to == head) halves_[side][1] = h;
+    }
+    for (Half other = static_cast<Half>(3 * first); other < h; ++other)
+      if (fine.tail(other) == to && fine.head(other) == from) {
+        fine_.mesh.twin[to_size(h)] = other;
+        fine_.mesh.twin[to_size(other)] = h;
+      }
+  }
+
+  /// Glues the parts of sides as the sides were.
+  void glue_sides() {
+    for (std::size_t h = 0; h < halves_.size(); ++h) {
+      if (coarse_.mesh.twin[h] < 0) continue;
+      const std::array<Half, 2> own = halves_[h];
+      std::array<Half, 2> other = halves_[to_size(coarse_.mesh.twin[h])];
+      const bool mirrored = coarse_.mesh.mirrored[h] != 0;
+      if (middle_[h] >= 0 && !mirrored) std::swap(other[0], other[1]);
+      for (std::size_t k = 0; k < (middle_[h] >= 0 ? 2U : 1U); ++k) {
+        fine_.mesh.twin[to_size(own[k])] = other[k];
+        fine_.mesh.mirrored[to_size(own[k])] = mirrored ? 1 : 0;
+      }
+    }
+  }
+
+  const Refinement& coarse_;
+  Refinement fine_;
+  std::vector<Index> middle_;                ///< per half-edge: the point that splits it; -1: none
+  std::vector<std::array<Half, 2>> halves_;  ///< per half-edge: its parts, from its tail
+};
 
 }  // namespace
 
 Refinement refined(const FaceMesh& mesh, double longest) {
-  Refinement result{mesh, std::vector<Index>(mesh.size()), {}};
-  std::iota(result.face.begin(), result.face.end(), 0);
-  std::iota(result.mesh.vertices.begin(), result.mesh.vertices.end(), 0);
+  Refinement result{mesh, std::vector<Index>(mesh.size())};
+  std::iota(result.parent.begin(), result.parent.end(), 0);
   double longest_now = 0;
   for (std::size_t h = 0; h < 3 * mesh.size(); ++h)
     longest_now = std::max(longest_now, distance(mesh.points[to_size(mesh.tail(static_cast<Half>(h)))],
@@ -102,11 +142,12 @@ Refinement refined(const FaceMesh& mesh, double longest) {
   // Long sides first, so that needles are cut across.
   for (double limit = longest_now; limit > longest;) {
     limit = std::max(limit / 2, longest);
-    while (split_long_sides(result.mesh, limit, longest, result.face)) continue;
+    for (;;) {
+      Splitter splitter(result);
+      if (!splitter.split_sides(limit, longest)) break;
+      result = std::move(splitter).divide_faces();
+    }
   }
-  result.point = result.mesh.vertices;
-  for (Index& vertex : result.mesh.vertices)
-    if (vertex >= 0) vertex = mesh.vertices[to_size(vertex)];
   return result;
 }
 

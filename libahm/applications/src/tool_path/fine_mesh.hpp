@@ -13,11 +13,10 @@
 
 namespace ahm {
 
-/// A mesh of the same shape as a coarser one.
+/// A mesh of the same shape as a coarser one. It has the points of the coarse mesh, followed by others.
 struct Refinement {
   FaceMesh mesh;
-  std::vector<Index> face;   ///< per face: the coarse face that contains it, with the same orientation
-  std::vector<Index> point;  ///< per point: the same point of the coarse mesh; -1: none
+  std::vector<Index> parent;  ///< per face: the coarse face that contains it, with the same orientation
 };
 
 /// A mesh of the same shape with sides of at most `longest`.

@@ -14,9 +14,6 @@ using detail::Corner;
 using detail::Half;
 using exact::MeshPoint;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
 Vec3 corner_position(const FaceMesh& mesh, Half h) { return mesh.points[to_size(mesh.tail(h))]; }
 
 /// A position in the plane of a face, as a point of the face. Rounding errors outside of it are cut off.
@@ -44,58 +41,51 @@ double angle_around(const PathDomain& domain, Half corner, const Vec3& direction
          std::atan2(dot(cross(side, direction), normal), dot(side, direction));
 }
 
-/// The corner of a point in a part of a coarse face; -1: none.
-Half corner_in(const FineDomain& domain, Half any_corner, Index coarse_face) {
-  const Corner first = domain.surface.first_corner(domain.mesh.tail(any_corner));
-  for (Corner c = first; c.half >= 0;) {
-    if (domain.coarse_face[to_size(c.half / 3)] == coarse_face) return c.half;
-    c = domain.surface.turn_left(c);
-    if (c == first) break;
-  }
-  return -1;
+/// A corner of a point in a part of a coarse face.
+Half corner_in(const FineDomain& domain, Index point, Index coarse_face) {
+  Corner c = domain.surface.first_corner(point);
+  while (domain.parent[to_size(c.half / 3)] != coarse_face) c = domain.surface.turn_left(c);
+  return c.half;
 }
 
 }  // namespace
 
 MeshPoint FineDomain::in_coarse(const MeshPoint& point) const {
-  return placed(coarse.mesh, coarse_face[to_size(point.face)], mesh.position(point));
+  return placed(coarse.mesh, parent[to_size(point.face)], mesh.position(point));
 }
 
 Front front(const FineDomain& domain, const std::vector<MeshPoint>& sources, double radius, const Progress& progress) {
   const PathDomain& coarse = domain.coarse;
+  const std::size_t vertices = coarse.mesh.points.size(), points = domain.mesh.points.size();
   exact::ExactOptions options;
   options.radius = radius;
   options.progress = progress;
-  std::vector<Half> corners(domain.mesh.points.size(), -1);  // a corner of each point
-  for (std::size_t h = 0; h < 3 * domain.mesh.size(); ++h) {
-    const auto corner = static_cast<Half>(h);
-    const Index p = domain.mesh.tail(corner);
-    if (corners[to_size(p)] >= 0) continue;
-    corners[to_size(p)] = corner;
-  }
-  std::vector<std::size_t> target(domain.mesh.points.size());
-  for (std::size_t p = 0; p < corners.size(); ++p) {
-    if (domain.coarse_point[p] >= 0) continue;
-    target[p] = options.targets.size();
-    options.targets.push_back(placed(coarse.mesh, domain.coarse_face[to_size(corners[p] / 3)], domain.mesh.points[p]));
+  for (std::size_t p = vertices; p < points; ++p) {
+    const Half corner = domain.surface.first_corner(static_cast<Index>(p)).half;
+    options.targets.push_back(placed(coarse.mesh, domain.parent[to_size(corner / 3)], domain.mesh.points[p]));
   }
   std::vector<MeshPoint> coarse_sources;
   for (const MeshPoint& source : sources) coarse_sources.push_back(domain.in_coarse(source));
   const exact::ExactMap map = exact::exact_map(coarse.surface, coarse_sources, options);
 
-  Front result{std::vector<double>(corners.size(), infinity), std::vector<double>(corners.size(), nan)};
-  for (std::size_t p = 0; p < corners.size(); ++p) {
-    const Vertex vertex(domain.coarse_point[p]);
-    const bool is_vertex = vertex.index >= 0;
-    if ((is_vertex ? map.status(vertex) : map.target_status(target[p])) != Status::ok) continue;
-    result.distance[p] = is_vertex ? map.distance(vertex) : map.target_distance(target[p]);
-    const exact::Arrival& arrival = is_vertex ? map.arrival(vertex) : map.target_arrival(target[p]);
-    if (arrival.half < 0) continue;
-    const exact::HalfRecord side = coarse.surface.record(arrival.half);
-    const Vec2 at = is_vertex ? Vec2{side.apex_x, side.apex_y} : coarse.surface.place(map.target(target[p]));
+  using Limits = std::numeric_limits<double>;
+  Front result{std::vector<double>(points, Limits::infinity()), std::vector<double>(points, Limits::quiet_NaN())};
+  const auto set = [&](std::size_t p, double distance, const exact::Arrival& arrival, const Vec2& at) {
+    result.distance[p] = distance;
+    if (arrival.half < 0) return;
     const Vec3 back = in_space(coarse.mesh, arrival.half, arrival.from - at);
-    result.back[p] = angle_around(domain, corner_in(domain, corners[p], arrival.half / 3), back);
+    result.back[p] = angle_around(domain, corner_in(domain, static_cast<Index>(p), arrival.half / 3), back);
+  };
+  for (std::size_t p = 0; p < vertices; ++p) {
+    const Vertex vertex(static_cast<Index>(p));
+    if (map.status(vertex) != Status::ok) continue;
+    const exact::Arrival& arrival = map.arrival(vertex);
+    const exact::HalfRecord side = coarse.surface.record(std::max(arrival.half, 0));
+    set(p, map.distance(vertex), arrival, {side.apex_x, side.apex_y});
   }
+  for (std::size_t k = 0; k < map.targets(); ++k)
+    if (map.target_status(k) == Status::ok)
+      set(vertices + k, map.target_distance(k), map.target_arrival(k), coarse.surface.place(map.target(k)));
   return result;
 }
 

@@ -10,7 +10,7 @@
 namespace ahm {
 
 /// Longest side of the mesh on which windows propagate, and of the fine mesh on which distances are interpolated.
-inline constexpr double longest_window_side = 1.6, longest_side = 0.4;
+inline constexpr double longest_window_side = 3.2, longest_side = 0.4;
 
 /// A mesh, and its exact geodesics.
 struct PathDomain {
@@ -22,7 +22,7 @@ struct PathDomain {
   exact::PolyhedralSurface surface;
 };
 
-/// A fine mesh, inside the faces of a coarser one of the same shape.
+/// A fine mesh of the same shape as a coarser one, whose points it begins with.
 struct FineDomain : PathDomain {
   /// @param coarse  must outlive this object
   explicit FineDomain(const PathDomain& coarse) : FineDomain(coarse, refined(coarse.mesh, longest_side)) {}
@@ -31,15 +31,11 @@ struct FineDomain : PathDomain {
   exact::MeshPoint in_coarse(const exact::MeshPoint& point) const;
 
   const PathDomain& coarse;
-  std::vector<Index> coarse_face;   ///< as `Refinement::face`
-  std::vector<Index> coarse_point;  ///< as `Refinement::point`
+  std::vector<Index> parent;  ///< as `Refinement::parent`
 
  private:
   FineDomain(const PathDomain& coarse, Refinement fine)
-      : PathDomain(std::move(fine.mesh)),
-        coarse(coarse),
-        coarse_face(std::move(fine.face)),
-        coarse_point(std::move(fine.point)) {}
+      : PathDomain(std::move(fine.mesh)), coarse(coarse), parent(std::move(fine.parent)) {}
 };
 
 /// Distance from curves at the points of a fine mesh, with the angle at which the shortest path arrives.

@@ -255,17 +255,16 @@ void remove_short(const FaceMesh& mesh, std::vector<PassCurve>& passes) {
   std::erase_if(passes, [&](const PassCurve& pass) { return curve_length(mesh, pass.curve) < shortest_pass; });
 }
 
-/// Appends sources that represent a curve in an exact map: the middles of pieces of at most `step`. They lie inside faces,
-/// unless the curve runs along a side.
+/// Appends sources that represent a curve in an exact map: the middles of equal pieces of at most `step`.
 void add_sources(const FaceMesh& mesh, const MeshCurve& curve, double step, std::vector<MeshPoint>& sources) {
+  const double length = curve_length(mesh, curve), piece = length / std::ceil(length / step);
+  double next = piece / 2, walked = 0;
   for (std::size_t k = 0; k < segments(curve); ++k) {
     const MeshPoint a = in_face(mesh, curve.points[k], curve.faces[k]),
                     b = in_face(mesh, after(curve, k), curve.faces[k]);
-    const double length = distance(mesh.position(a), mesh.position(b));
-    const auto parts = std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil(length / step)));
-    if (!(length > 1e-9)) continue;
-    for (std::size_t j = 0; j < parts; ++j)
-      sources.push_back(between(a, b, (static_cast<double>(j) + 0.5) / static_cast<double>(parts)));
+    const double ahead = distance(mesh.position(a), mesh.position(b));
+    for (; next <= walked + ahead; next += piece) sources.push_back(between(a, b, (next - walked) / ahead));
+    walked += ahead;
   }
 }
 
