@@ -91,7 +91,8 @@ class Riser {
     const Half to_apex = detail::next(entered), from_apex = detail::previous(entered);
     const double above = value(mesh_.tail(entered)), apex = value(mesh_.tail(from_apex));
     const double wanted = std::min(wanted_, end_);
-    const bool is_apex_above = apex >= wanted || (above < wanted && apex >= above);
+    // Along a row of points with nearly the same value, the level cannot rise: it passes over the row where it is behind.
+    const bool is_apex_above = apex >= wanted || (above < wanted && apex - above >= wanted - apex);
     const Half side = is_apex_above ? to_apex : from_apex;
     const double from = value(mesh_.tail(side)), to = value(mesh_.head(side));
     level_ = std::max(level_, std::min(wanted, from + most_along * (to - from)));
@@ -100,7 +101,7 @@ class Riser {
   /// Place of the level on a side, from its tail.
   double share(Half side) const {
     const double from = value(mesh_.tail(side)), to = value(mesh_.head(side));
-    return std::clamp((level_ - from) / (to - from), 0.0, 1.0);
+    return to > from ? std::clamp((level_ - from) / (to - from), 0.0, 1.0) : most_along;
   }
   /// Rise per length.
   double slope() const {

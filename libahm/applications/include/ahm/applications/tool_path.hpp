@@ -172,6 +172,6 @@ struct ToolPathMeasures {
 /// @param samples  number of points per square spacing
 /// @throws as `tool_path`
 ToolPathMeasures tool_path_measures(const Surface& surface, const ToolPath& path, const ToolPathRegion& region = {},
-                                    double samples = 12);
+                                    double samples = 24);
 
 }  // namespace ahm
