@@ -46,13 +46,9 @@ const char* word(PassOrigin origin) {
 
 /// The region of --mask: rows whose value is not zero.
 std::vector<bool> mask_of(const io::Geometry& geometry, const std::string& name) {
-  for (const io::Property& property : geometry.properties) {
-    if (property.name != name) continue;
-    std::vector<bool> rows;
-    for (const double value : property.values) rows.push_back(value != 0 && !std::isnan(value));
-    return rows;
-  }
-  throw InvalidArgument(fmt::format("--mask {}: the input has no such column", name));
+  std::vector<bool> rows;
+  for (const double value : column_of(geometry, name, "--mask")) rows.push_back(value != 0 && !std::isnan(value));
+  return rows;
 }
 
 std::vector<Vec3> curve_of(const Input& input, const std::vector<SourceSpec>& specs, const std::string& option) {
