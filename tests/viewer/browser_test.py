@@ -274,7 +274,7 @@ class Page(unittest.TestCase):
         self.settled()
         self.shot("spiral")
         self.expect_export("whole.csv")
-        Select(self.driver.find_element(By.ID, "whole_pattern")).select_by_visible_text("raster")
+        self.js("document.getElementById('whole_pattern').value = 'raster'")
         self.js("ahm.seed = [{ row: arguments[0] }, { row: arguments[1] }]; ahm.ask_whole()", rows[0][0], rows[-1][0])
         self.wait("document.getElementById('command').textContent.includes('--seed-curve')")
         self.settled()
@@ -434,7 +434,7 @@ class Page(unittest.TestCase):
         self.shot("touch")
 
     def all_is_seen(self):
-        return self.js("const p = document.getElementById('panel'); return p.scrollHeight <= p.clientHeight")
+        return self.js("const p = document.getElementById('panel'); return p.scrollHeight <= p.clientHeight && p.scrollWidth <= p.clientWidth")
 
     def expect_all_seen_with_larger_letters_and_a_longer_command(self, tool):
         self.js("""document.body.style.fontSize = '14px';
@@ -460,7 +460,7 @@ class Page(unittest.TestCase):
         self.shot("dark")
         self.assertTrue(self.all_is_seen())
         self.js("document.getElementById('method_section').open = true")
-        for tool in ("path", "stroke", "decal", "coverage", "map"):
+        for tool in ("path", "stroke", "decal", "coverage", "whole", "isolines", "map"):
             self.js("ahm.set_tool(arguments[0])", tool)
             self.settled()
             self.assertTrue(self.all_is_seen(), tool)
