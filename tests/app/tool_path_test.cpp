@@ -129,7 +129,7 @@ TEST_F(Coverage, JoinsClosedPassesToASpiral) {
   EXPECT_LT(number(json, "/double_covered"), 0.03);
   EXPECT_LE(json.at("passes").size(), 5U);
   EXPECT_TRUE(
-      has(run_ok(command + " --facing 0,0,1 --max-angle 5 --seed-line 0,0,1 --direction 1,0,0").err, "no spiral"));
+      has(run_ok(command + " --facing 0,0,1 --max-angle 5 --seed-line 0,0,1 --direction 30").err, "no spiral"));
 }
 
 TEST_F(Coverage, OfAWholePartIsWrittenForMachinesAndRobots) {

@@ -57,24 +57,19 @@ std::vector<Vec3> curve_of(const Input& input, const std::vector<SourceSpec>& sp
   return points;
 }
 
-/// A point of the surface at most half a spacing from a position. @param fault  of the error, a literal
-SurfacePoint point_near(const Input& input, const SourceSpec& spec, const std::string& option, double spacing,
-                        std::string_view fault) {
-  if (const auto* position = std::get_if<SourcePosition>(&spec))
-    if (const double away = input.surface().closest_point(position->position).distance; away > spacing / 2)
-      throw InvalidArgument(fault,
-                            fmt::format("{} {}: the point is {:.4g} from the surface, more than half of the spacing",
-                                        option, to_string(spec), away),
-                            "use a point on the surface");
-  return point_on_surface(input, spec, option);
+/// The point of a SPEC. The library checks the distance of positions from the surface.
+CurvePoint curve_point(const Input& input, const SourceSpec& spec, const std::string& option) {
+  const SurfacePoint point = point_on_surface(input, spec, option);
+  if (const auto* given = std::get_if<SourcePosition>(&spec)) return given->position;
+  return point;
 }
 
 ToolPathSeed seed_of(const WholeOptions& options, const Input& input) {
   if (options.from_boundary) return BoundarySeed{};
   if (const auto& p = options.plane; !p.empty()) return PlaneSeed{{p[0], p[1], p[2]}, {p[3], p[4], p[5]}};
   if (options.line)
-    return LineSeed{point_near(input, *options.line, "--seed-line", options.path.spacing, "seed_off_surface"),
-                    *options.direction};
+    return LineSeed{curve_point(input, *options.line, "--seed-line"),
+                    vector_of(*options.direction, input, point_on_surface(input, *options.line, "--seed-line"))};
   if (options.curve.empty()) return AutomaticSeed{};
   return CurveSeed{curve_of(input, options.curve, "--seed-curve"), options.closed};
 }
@@ -158,8 +153,8 @@ void offer_whole(CLI::App& app, WholeOptions& o) {
       "--seed-line", o.line, [](const std::string& text) { return parse_source(text); }, "SPEC",
       "Passes parallel to the straight line through a point");
   auto* direction = add(
-      "--direction", o.direction, [](const std::string& text) { return parse_direction(text); }, "X,Y,Z",
-      "Direction of --seed-line");
+      "--direction", o.direction, [](const std::string& text) { return parse_vector_or_angle(text); }, "DIRECTION",
+      "Direction of --seed-line: a vector X,Y,Z, or an angle in degrees from the u axis, as in 'ahm trace'");
   line->needs(direction);
   direction->needs(line);
   std::vector<CLI::Option*> seeds{boundary, plane, curve, line};
@@ -220,7 +215,7 @@ void run_whole(const InputOptions& input_options, const OutputOptions& output, c
   o.seed = seed_of(options, input);
   o.progress = journal.progress();
   o.threads = input_options.threads;
-  if (source) o.region.disc = {point_near(input, *source, "--source", o.spacing, "region_off_surface"), radius};
+  if (source) o.region.disc = {curve_point(input, *source, "--source"), radius};
   if (!options.mask.empty()) o.region.rows = mask_of(input.geometry, options.mask);
   if (options.facing) o.region.facing = {*options.facing, options.max_angle};
   if (!options.inside.empty()) o.region.enclosures.push_back({curve_of(input, options.inside, "--inside")});

@@ -59,12 +59,34 @@ double extent(const FaceMesh& mesh) {
   return distance(low, high);
 }
 
+/// The nearest point of a surface.
+/// @param name   of the point, for messages
+/// @param fault  name of the error, a literal
+SurfacePoint point_near(const Surface& surface, const Vec3& position, double spacing, const std::string& name,
+                        std::string_view fault) {
+  const ClosestPoint closest = surface.closest_point(position);
+  if (closest.distance > largest_curve_distance * spacing)
+    throw InvalidArgument(fault,
+                          name + " is " + detail::number(closest.distance) +
+                              " from the surface, more than half of the spacing",
+                          "use a point on the surface");
+  return closest.point;
+}
+
+SurfacePoint on_surface(const Surface& surface, const CurvePoint& point, double spacing, const std::string& name,
+                        std::string_view fault) {
+  if (const auto* position = std::get_if<Vec3>(&point)) return point_near(surface, *position, spacing, name, fault);
+  return std::get<SurfacePoint>(point);
+}
+
 /// Keeps the faces within a distance along the surface of a point.
 void keep_disc(const Surface& surface, const ToolPathRegion::Disc& disc, double spacing, const FaceMesh& mesh,
                std::vector<bool>& kept) {
   check_positive("the radius of the region", disc.radius);
   const PathDomain domain(mesh);
-  const auto center = FaceLocator(domain.mesh).nearest((1 / spacing) * surface.position(disc.center));
+  const SurfacePoint point =
+      on_surface(surface, disc.center, spacing, "the center of the region", "region_off_surface");
+  const auto center = FaceLocator(domain.mesh).nearest((1 / spacing) * surface.position(point));
   std::fill(kept.begin(), kept.end(), false);
   if (!center) return;
   exact::ExactOptions options;
@@ -205,12 +227,7 @@ SurfaceCurve drawn_curve(const Surface& surface, std::span<const Vec3> positions
                          const std::string& name, std::string_view fault) {
   std::vector<CurvePoint> points;
   for (std::size_t k = 0; k < positions.size(); ++k) {
-    const double away = surface.closest_point(positions[k]).distance;
-    if (away > largest_curve_distance * spacing)
-      throw InvalidArgument(fault,
-                            "point " + std::to_string(k) + " of the " + name + " curve is " + detail::number(away) +
-                                " from the surface, more than half of the spacing",
-                            "use points on the surface");
+    point_near(surface, positions[k], spacing, "point " + std::to_string(k) + " of the " + name + " curve", fault);
     points.emplace_back(positions[k]);
   }
   return draw_curve(surface, points, {.closed = closed});
@@ -250,6 +267,8 @@ struct SeedFinder {
   }
   std::vector<MeshCurve> operator()(const LineSeed& line) const {
     const double length = extent(domain.mesh) * spacing;
+    const SurfacePoint start =
+        on_surface(surface, line.point, spacing, "the point of the seed line", "seed_off_surface");
     std::optional<ExactGeodesics> geodesics;
     if (surface.faces().size() > 0) geodesics.emplace(surface);
     std::vector<Vec3> points;
@@ -257,10 +276,10 @@ struct SeedFinder {
       std::vector<Vec3> half;
       try {
         if (geodesics)
-          for (const MeshPoint& p : geodesics->trace(line.point, side * line.direction, length).points)
+          for (const MeshPoint& p : geodesics->trace(start, side * line.direction, length).points)
             half.push_back(geodesics->position(p));
         else
-          half = trace_line(surface, line.point, side * line.direction, length).points;
+          half = trace_line(surface, start, side * line.direction, length).points;
       } catch (const InvalidArgument& e) {  // on the boundary, one side leaves the surface
         if (e.fault() == "axis_along_normal")
           throw InvalidArgument("seed_along_normal", "the direction of the seed line is perpendicular to the surface",
@@ -274,7 +293,7 @@ struct SeedFinder {
       points.insert(points.end(), half.begin() + (side > 0 && !points.empty() ? 1 : 0), half.end());
     }
     return {without_returns(domain.mesh, on_mesh(domain, points, false, spacing),
-                            (1 / spacing) * surface.position(line.point))};
+                            (1 / spacing) * surface.position(start))};
   }
 };
 

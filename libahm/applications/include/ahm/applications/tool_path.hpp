@@ -37,8 +37,8 @@ struct CurveSeed {
 /// within half a spacing of itself, and after the length of the diagonal of the bounding box. From a point of the boundary it
 /// runs to one side.
 struct LineSeed {
-  SurfacePoint point;
-  Vec3 direction;  ///< in space; projected to the surface
+  CurvePoint point;  ///< a position is at most half a spacing from the surface, world units
+  Vec3 direction;    ///< in space; projected to the surface. At an angle: `Surface::direction`
 };
 using ToolPathSeed = std::variant<AutomaticSeed, PlaneSeed, BoundarySeed, CurveSeed, LineSeed>;
 
@@ -53,8 +53,8 @@ struct ToolPathRegion {
   std::optional<Facing> facing;
   /// Triangles within this distance of a point, along the surface.
   struct Disc {
-    SurfacePoint center;
-    double radius;  ///< world units
+    CurvePoint center;  ///< a position is at most half a spacing from the surface, world units
+    double radius;      ///< world units
   };
   std::optional<Disc> disc;
   /// One side of a curve that is joined as by `draw_curve` and closed. The curve divides its component. The largest part is
