@@ -57,6 +57,7 @@ def isolines(surface: SurfaceLike, values: Vector, levels: Union[float, Vector, 
 
 
 _KINDS = np.array(["pass", "link", "approach", "retreat"])
+_COVERAGES = np.array(["covered", "gap", "no_pass", "outside_region", "no_triangle", "removed"])
 _ORIGINS = ("seed", "level", "cut_locus", "boundary", "spiral")
 
 
@@ -86,6 +87,9 @@ class ToolPath(NamedTuple):
     #: area, covered (share of the area within 0.6 spacings of a pass), largest_gap (in spacings), double_covered (share of
     #: the pass length), pass_length, link_length, surface_links, lifted_links, missing_links, uncovered_components
     measures: Dict[str, float]
+    #: (n,) "covered" (within 0.6 spacings of a pass), or why a row is not: "gap"; "no_pass", in a component that the seed does
+    #: not reach, or that is too small; "outside_region"; "no_triangle", isolated points of clouds and unused vertices; "removed"
+    rows: np.ndarray
 
     @property
     def poses(self) -> np.ndarray:
@@ -254,9 +258,10 @@ def tool_path(surface: SurfaceLike, spacing: float, *, seed: str = "auto", plane
         if length is not None:
             options[name] = arguments.real(length, name, positive=True)
     with reporting(progress) as report:
-        position, contact, axis, travel, quaternion, number, motion, arclength, passes, measures = _core.tool_path(
+        position, contact, axis, travel, quaternion, number, motion, arclength, passes, measures, coverage = _core.tool_path(
             on._body, apart, kind, points, is_closed_curve, start, turn, mask,
             np.empty(0) if toward is None else toward, angle, within, without, middle, options, report)
     made = [ToolPass(begin, end, is_closed, _ORIGINS[origin], distance, length)
             for begin, end, is_closed, origin, distance, length in passes]
-    return ToolPath(position, contact, axis, travel, quaternion, number, _KINDS[motion], arclength, made, measures)
+    return ToolPath(position, contact, axis, travel, quaternion, number, _KINDS[motion], arclength, made, measures,
+                    _COVERAGES[coverage])

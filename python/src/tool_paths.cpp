@@ -56,7 +56,7 @@ LineSeed line_of(const Body& body, const py::tuple& start, const Doubles& direct
 /// @param center  of the disc with the radius in the options, or None
 /// @param inside, outside  empty, or the points of closed curves
 /// @return position, contact, axis, travel, quaternion, pass, kind, arclength of the poses; begin, end, closed, kind, distance,
-/// length of the passes; measures and links
+/// length of the passes; measures and links; coverage of the rows
 py::tuple tool_path_of(const BodyPtr& body, double spacing, const std::string& seed, const Doubles& points, bool closed,
                        const py::object& start, double angle, const Bytes& mask, const Doubles& facing,
                        double max_angle, const Doubles& inside, const Doubles& outside, const py::object& center,
@@ -106,6 +106,8 @@ py::tuple tool_path_of(const BodyPtr& body, double spacing, const std::string& s
   py::list passes;
   for (const ToolPass& p : path.passes)
     passes.append(py::make_tuple(p.begin, p.end, p.closed, static_cast<int>(p.origin), p.distance, p.length));
+  std::vector<std::uint8_t> rows;
+  for (const RowCoverage row : measures.rows) rows.push_back(static_cast<std::uint8_t>(row));
   const py::ssize_t n = length(quaternion);
   return py::make_tuple(
       owned(std::move(position)), owned(std::move(contact)), owned(std::move(axis)), owned(std::move(travel)),
@@ -115,7 +117,8 @@ py::tuple tool_path_of(const BodyPtr& body, double spacing, const std::string& s
                "double_covered"_a = measures.double_covered, "pass_length"_a = path.pass_length,
                "link_length"_a = path.link_length, "surface_links"_a = path.surface_links,
                "lifted_links"_a = path.lifted_links, "missing_links"_a = path.missing_links,
-               "uncovered_components"_a = path.uncovered_components));
+               "uncovered_components"_a = path.uncovered_components),
+      owned(std::move(rows)));
 }
 
 /// The arrays of a path as poses.

@@ -1,13 +1,16 @@
 #include "commands/whole_coverage.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "ahm/error.hpp"
+#include "ahm/io/write.hpp"
 #include "cli/option_adders.hpp"
 #include "cli/source_list.hpp"
 #include "commands/line_finder.hpp"
@@ -42,6 +45,68 @@ const char* word(PassOrigin origin) {
       return "spiral";
   }
   return "";
+}
+
+const std::vector<std::string> coverages{"covered", "gap", "no_pass", "outside_region", "no_triangle", "removed"};
+
+std::array<std::size_t, 6> count_rows(const std::vector<RowCoverage>& rows) {
+  std::array<std::size_t, 6> counts{};
+  for (const RowCoverage row : rows) ++counts[static_cast<std::size_t>(row)];
+  return counts;
+}
+
+/// Writes the rows of the input with their coverage.
+void write_rows(const std::string& file, const io::Geometry& geometry, const std::vector<RowCoverage>& rows) {
+  std::vector<std::uint8_t> codes;
+  for (const RowCoverage row : rows) codes.push_back(static_cast<std::uint8_t>(row));
+  io::Table table{.title = "coverage by libahm"};
+  table.add({"x", "y", "z"}, geometry.points);
+  table.columns.push_back({{"coverage"}, io::CodedWords{codes, coverages}});
+  table.faces = geometry.faces();
+  io::write(file, table);
+}
+
+/// The rows that are not covered, by reason: "rows not covered: 12 in gaps, 3 in no triangle". Empty if there are none.
+std::string uncovered_rows(const std::vector<RowCoverage>& rows) {
+  const std::array<std::size_t, 6> counts = count_rows(rows);
+  std::vector<std::string> parts;
+  for (const auto& [reason, words] : {std::pair{RowCoverage::gap, "in gaps"},
+                                      {RowCoverage::no_pass, "in components without a pass"},
+                                      {RowCoverage::no_triangle, "in no triangle"},
+                                      {RowCoverage::removed, "removed before the map"}})
+    if (const std::size_t n = counts[static_cast<std::size_t>(reason)]; n > 0)
+      parts.push_back(fmt::format("{} {}", n, words));
+  return parts.empty() ? "" : fmt::format("rows not covered: {}\n", fmt::join(parts, ", "));
+}
+
+constexpr double long_side = 10;  ///< times the median side
+
+/// Share of the area of a cloud in triangles with long sides: between outliers, across holes, where points are sparse.
+double long_triangles(const Surface& surface) {
+  const exact::PolyhedralSurface flat = surface.flat_approximation().surface;
+  std::vector<double> sides;
+  for (Index half = 0; half < 3 * flat.face_count(); ++half) sides.push_back(flat.record(half).length);
+  std::vector<double> sorted = sides;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  double all = 0, in_long = 0;
+  for (std::size_t k = 0; k < sides.size(); k += 3) {
+    const double a = sides[k], b = sides[k + 1], c = sides[k + 2], half_sum = (a + b + c) / 2;
+    const double area = std::sqrt(std::max(0.0, half_sum * (half_sum - a) * (half_sum - b) * (half_sum - c)));
+    all += area;
+    if (std::max({a, b, c}) > long_side * *middle) in_long += area;
+  }
+  return in_long / all;
+}
+
+/// Warns if much of the area of a cloud may be no surface.
+void comment_on_long_triangles(const Input& input, Journal& journal) {
+  if (input.surface().faces().size() > 0) return;
+  if (const double share = long_triangles(input.surface()); share > 0.02)
+    journal.add_warning(fmt::format(
+        "{:.1f} % of the area is in triangles with sides longer than {:g} times the median: between outliers, across "
+        "holes, or where points are sparse; the path covers them, too. Remove outliers (--outliers), or cover a region",
+        100 * share, long_side));
 }
 
 /// The region of --mask: rows whose value is not zero.
@@ -108,6 +173,8 @@ void report(const std::string& input_path, const OutputOptions& output, const In
   j["covered"] = measures.covered;
   j["largest_gap"] = measures.largest_gap;
   j["double_covered"] = measures.double_covered;
+  const std::array<std::size_t, 6> counts = count_rows(measures.rows);
+  for (std::size_t k = 0; k < counts.size(); ++k) j["rows"][coverages[k]] = counts[k];
   for (std::size_t k = 0; k < path.passes.size() && !output.json.empty(); ++k) {
     const ToolPass& pass = path.passes[k];
     j["passes"].push_back({{"pass", k},
@@ -129,7 +196,8 @@ void report(const std::string& input_path, const OutputOptions& output, const In
                                  : fmt::format(" ({} spirals)", spirals),
                   path.pass_length, path.poses.size(), path.surface_links, path.lifted_links,
                   path.missing_links == 0 ? "" : fmt::format(", {} missing", path.missing_links), path.link_length,
-                  100 * measures.covered, measures.largest_gap, 100 * measures.double_covered),
+                  100 * measures.covered, measures.largest_gap, 100 * measures.double_covered) +
+          uncovered_rows(measures.rows),
       output, journal);
 }
 
@@ -194,12 +262,14 @@ void offer_whole(CLI::App& app, WholeOptions& o) {
   add("--tilt", o.path.tilt, lean, "DEG", "The tool leans to the left of the travel by DEG degrees; < 0: to the right");
   add("--offset", o.path.offset, parse_positive, "D",
       "Distance of the poses from the surface, as the center of a ball of radius D on it");
+  add("--rows", o.rows, non_empty, "FILE", "Write the rows of INPUT with their coverage, see below: .csv, .ply, ...");
   offer_path_files(app, o.files, whole);
 }
 
 void run_whole(const InputOptions& input_options, const OutputOptions& output, const WholeOptions& options,
                const std::optional<SourceSpec>& source, double radius) {
-  check_results(input_options.path, output, path_endings());
+  check_results(input_options.path, output, path_endings(), {{"--rows", options.rows}});
+  if (!options.rows.empty()) io::check_writable(options.rows);
   check_path_file(output, options.files);
   if (input_options.around_source)
     throw InvalidArgument("--local: cannot be combined with --whole, which needs the whole input");
@@ -211,6 +281,7 @@ void run_whole(const InputOptions& input_options, const OutputOptions& output, c
   InputOptions opened = with_named_points(input_options, named);
   opened.all_components = true;
   const Input input = open_input(opened, journal);
+  comment_on_long_triangles(input, journal);
   ToolPathOptions o = options.path;
   o.seed = seed_of(options, input);
   o.progress = journal.progress();
@@ -241,6 +312,7 @@ void run_whole(const InputOptions& input_options, const OutputOptions& output, c
                     100 * (1 - measures.covered), measures.largest_gap));
   write_view(input_options, output, input, path, journal);
   journal.start("write");
+  if (!options.rows.empty()) write_rows(options.rows, input.geometry, measures.rows);
   write_tool_path(output.output, output.format, options.files, o, path);
   report(input_options.path, output, input, path, measures, journal);
 }

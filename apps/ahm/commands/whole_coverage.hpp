@@ -30,6 +30,7 @@ struct WholeOptions {
   double max_angle = 0.785398163397448;  ///< radians
   ToolPathOptions path = {};
   PathFileOptions files = {};
+  std::string rows;  ///< a file
 };
 
 /// Adds --whole and the options that need it.

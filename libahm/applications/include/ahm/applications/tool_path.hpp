@@ -9,6 +9,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <variant>
 #include <vector>
@@ -156,14 +157,26 @@ struct ToolPath {
 /// InvalidGeometry (faces without area, needles: as `exact::exact_map`), ResourceExhausted, Cancelled
 ToolPath tool_path(const Surface& surface, const ToolPathOptions& options);
 
+/// Whether a tool path covers a row, and why not.
+enum class RowCoverage : std::uint8_t {
+  covered,         ///< within 0.6 spacings of a pass, along the surface
+  gap,             ///< farther from the passes
+  no_pass,         ///< in a component of the region without a pass: the seed does not reach it, or it is too small
+  outside_region,  ///< in no triangle of the region
+  no_triangle,     ///< in no triangle of the surface: isolated points of clouds, unused vertices of meshes
+  removed,         ///< without a vertex: removed from the cloud, for example as an outlier
+};
+
 /// How well a tool path covers a surface.
 struct ToolPathMeasures {
   double area = 0;         ///< area of the region, world units squared
   double covered = 0;      ///< share of the area within 0.6 spacings of a pass, along the surface
-  double largest_gap = 0;  ///< largest distance of a point of the region from the nearest pass, in spacings
+  /// Largest distance of a point of the region from the nearest pass, in spacings; 4: 4 or more, or not reached.
+  double largest_gap = 0;
   /// Share of the pass length that is closer than 0.5 spacings, in space, to another pass, or to the same pass more than two
   /// spacings along it. Points of different components, and on opposite sides of a wall, are not compared.
   double double_covered = 0;
+  std::vector<RowCoverage> rows;  ///< one per row of the surface
 };
 
 /// Measures a tool path independently of its construction. Distances are exact ones from the poses of the passes, and are
