@@ -88,7 +88,7 @@ class ToolPath(NamedTuple):
     #: the pass length), pass_length, link_length, surface_links, lifted_links, missing_links, uncovered_components
     measures: Dict[str, float]
     #: (n,) "covered" (within 0.6 spacings of a pass), or why a row is not: "gap"; "no_pass", in a component that the seed does
-    #: not reach, or that is too small; "outside_region"; "no_triangle", isolated points of clouds and unused vertices; "removed"
+    #: not reach, or that is too small; "outside_region"; "no_triangle", isolated points of clouds; "removed", or used by no face
     rows: np.ndarray
 
     @property

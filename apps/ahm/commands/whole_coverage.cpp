@@ -61,7 +61,7 @@ void write_rows(const std::string& file, const io::Geometry& geometry, const std
   for (const RowCoverage row : rows) codes.push_back(static_cast<std::uint8_t>(row));
   io::Table table{.title = "coverage by libahm"};
   table.add({"x", "y", "z"}, geometry.points);
-  table.columns.push_back({{"coverage"}, io::CodedWords{codes, coverages}});
+  table.columns.push_back({{"status"}, io::CodedWords{codes, coverages}});
   table.faces = geometry.faces();
   io::write(file, table);
 }
@@ -73,7 +73,7 @@ std::string uncovered_rows(const std::vector<RowCoverage>& rows) {
   for (const auto& [reason, words] : {std::pair{RowCoverage::gap, "in gaps"},
                                       {RowCoverage::no_pass, "in components without a pass"},
                                       {RowCoverage::no_triangle, "in no triangle"},
-                                      {RowCoverage::removed, "removed before the map"}})
+                                      {RowCoverage::removed, "removed before the map or without a face"}})
     if (const std::size_t n = counts[static_cast<std::size_t>(reason)]; n > 0)
       parts.push_back(fmt::format("{} {}", n, words));
   return parts.empty() ? "" : fmt::format("rows not covered: {}\n", fmt::join(parts, ", "));
@@ -262,7 +262,7 @@ void offer_whole(CLI::App& app, WholeOptions& o) {
   add("--tilt", o.path.tilt, lean, "DEG", "The tool leans to the left of the travel by DEG degrees; < 0: to the right");
   add("--offset", o.path.offset, parse_positive, "D",
       "Distance of the poses from the surface, as the center of a ball of radius D on it");
-  add("--rows", o.rows, non_empty, "FILE", "Write the rows of INPUT with their coverage, see below: .csv, .ply, ...");
+  add("--rows", o.rows, non_empty, "FILE", "Write for every row of INPUT whether it is covered, and why not, see below: .csv, .ply, ...");
   offer_path_files(app, o.files, whole);
 }
 

@@ -163,8 +163,8 @@ enum class RowCoverage : std::uint8_t {
   gap,             ///< farther from the passes
   no_pass,         ///< in a component of the region without a pass: the seed does not reach it, or it is too small
   outside_region,  ///< in no triangle of the region
-  no_triangle,     ///< in no triangle of the surface: isolated points of clouds, unused vertices of meshes
-  removed,         ///< without a vertex: removed from the cloud, for example as an outlier
+  no_triangle,     ///< in no triangle of the surface: isolated points of clouds
+  removed,         ///< without a vertex: points removed from the cloud, for example outliers; vertices that no face uses
 };
 
 /// How well a tool path covers a surface.
