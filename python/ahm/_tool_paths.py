@@ -203,7 +203,9 @@ def tool_path(surface: SurfaceLike, spacing: float, *, seed: str = "auto", plane
         point is a row, a position, `(face, barycentric)`, or `((row, row), t)`; the direction a vector in space, or an angle
         in radians from the u axis of a log map at the point, counterclockwise.
     rows : (n,) bool, cover only triangles whose corners are all True.
-    facing, max_angle : cover only triangles whose normal is within `max_angle` (radians; None: pi / 4) of the vector `facing`.
+    facing, max_angle : cover only what faces a direction, a vector in space: [0, 0, 1] is the upper side of a part. The angle
+        between the normal and the vector is at most `max_angle` (radians, in [0, pi]; None: pi / 4). What other parts hide is
+        covered, too.
     inside, outside : (n, 3) positions on the surface. Cover only one side of the closed curve through them. The largest part
         into which it divides the surface is the outside, the others are the inside.
     center, radius : cover only triangles within this distance along the surface of a point, which is given as in `line`.

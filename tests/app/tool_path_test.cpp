@@ -216,6 +216,7 @@ TEST_F(Coverage, RefusesPartsItCannotCover) {
                   {"--whole --spacing 0.2 --source 0,0,3 --radius 1", 1, {"the center of the region is", "from the surface"}},
                   {"--whole --spacing 0.2 --mask m", 1, {"--mask m"}},
                   {"--whole --spacing 0.2 --facing 0,0,1 --max-angle 0.001", 1, {"no triangle lies in the region"}},
+                  {"--whole --spacing 0.2 --facing 0,0,1 --max-angle 200", 2, {"not between 0 and 180"}},
                   {"--spacing 0.2 --clearance 1", 2, {"--clearance requires --whole"}},
                   {"--spacing 0.2", 2, {"--source is required"}}});
 }

@@ -620,6 +620,11 @@ TEST(ToolPath, RejectsWhatCannotBeCovered) {
   refuses({.spacing = 0.2, .seed = CurveSeed{{{0, 0, 1}, {0, 0, 3}}, false}}, "point 1 of the seed curve");
   refuses({.spacing = 0.2, .region = {.rows = std::vector<bool>(162, false)}}, "no triangle lies in the region");
   refuses({.spacing = 0.2, .region = {.rows = std::vector<bool>(3, true)}}, "3 rows");
+  refuses({.spacing = 0.2, .region = {.facing = ToolPathRegion::Facing{{0, 0, 1}, -0.1}}}, "angle of the region is -5.7");
+  refuses({.spacing = 0.2, .region = {.facing = ToolPathRegion::Facing{{0, 0, 1}, 3.2}}}, "in [0, 180]");
+  refuses({.spacing = 0.2, .region = {.facing = ToolPathRegion::Facing{{0, 0, 1}, 0}}}, "reverse the direction");
+  refuses({.spacing = 0.4, .region = {.disc = ToolPathRegion::Disc{Row{3}, 0.15}}}, "larger than the region");
+  refuses({.spacing = 0.4, .region = {.disc = ToolPathRegion::Disc{Row{3}, 0.01}}}, "enlarge the radius");
   refuses({.spacing = 0.2, .step = -1}, "step is -1");
   refuses({.spacing = 0.2, .lead = 2}, "lead is 2");
   const auto enclosed = [](const std::vector<Vec3>& points) {

@@ -232,8 +232,17 @@ void offer_whole(CLI::App& app, WholeOptions& o) {
   add("--mask", o.mask, non_empty, "NAME", "Cover only triangles whose corners have a nonzero value in column NAME");
   auto* facing = add(
       "--facing", o.facing, [](const std::string& text) { return parse_direction(text); }, "X,Y,Z",
-      "Cover only triangles whose normal is near a direction");
-  add("--max-angle", o.max_angle, parse_degrees, "DEG", "Largest angle between normal and --facing (default 45)")
+      "Cover only what faces a direction: 0,0,1 is the upper side of the part. What lies below other parts is\n"
+      "covered, too");
+  const auto half_turn = [](const std::string& text) {
+    const double angle = parse_degrees(text);
+    if (!(angle >= 0 && angle <= std::numbers::pi))
+      throw std::invalid_argument(fmt::format("'{}' is not between 0 and 180 degrees", text));
+    return angle;
+  };
+  add("--max-angle", o.max_angle, half_turn, "DEG",
+      "Largest angle between the normal of the surface and --facing, 0 to 180 (default 45). 0,0,1 with 90 covers all that "
+      "is\nnot turned down")
       ->needs(facing);
   add("--inside", o.inside, parse_sources, "POINTS",
       "Cover only what the closed curve through points encloses: all parts but the largest into which it divides the\n"

@@ -310,9 +310,10 @@ Index count_uncovered(const PathDomain& domain, const std::vector<MeshCurve>& se
 FaceMesh region_mesh(const Surface& surface, const ToolPathRegion& region, double spacing, double longest) {
   FaceMesh mesh = face_mesh(surface);
   for (Vec3& p : mesh.points) p = (1 / spacing) * p;
-  const auto keep = [](FaceMesh& of, const std::vector<bool>& kept) {
+  const auto keep = [](FaceMesh& of, const std::vector<bool>& kept, const std::string& condition,
+                       const std::string& remedy) {
     if (std::ranges::find(kept, true) == kept.end())
-      throw InvalidArgument("region_empty", "no triangle lies in the region", "enlarge the region");
+      throw InvalidArgument("region_empty", "no triangle lies in the region: none " + condition, remedy);
     if (std::ranges::find(kept, false) != kept.end()) of = part_of(of, kept);
   };
   if (!region.rows.empty()) {
@@ -329,18 +330,23 @@ FaceMesh region_mesh(const Surface& surface, const ToolPathRegion& region, doubl
         for (const Index p : face) inside[to_size(p)] = inside[to_size(p)] && row(p);
     for (std::size_t f = 0; f < kept.size(); ++f)
       kept[f] = std::ranges::all_of(mesh.faces[f], [&](Index p) { return inside[to_size(p)]; });
-    keep(mesh, kept);
+    keep(mesh, kept, "has all corners in the rows", "add rows");
   }
   if (region.facing) {
     const double length = norm(region.facing->direction);
     if (!(length > 0 && std::isfinite(length)))
       throw InvalidArgument("the direction of the region is zero or not finite");
+    if (!(region.facing->angle >= 0 && region.facing->angle <= std::numbers::pi))
+      throw InvalidArgument("the angle of the region is " + detail::number(region.facing->angle * 180 / std::numbers::pi) +
+                            " degrees; it must lie in [0, 180]");
     std::vector<bool> kept(mesh.size());
     for (std::size_t f = 0; f < kept.size(); ++f) {
       const Vec3 normal = mesh.area_normal(static_cast<Index>(f));
       kept[f] = dot(normal, region.facing->direction) >= std::cos(region.facing->angle) * norm(normal) * length;
     }
-    keep(mesh, kept);
+    keep(mesh, kept, "has a normal within " + detail::number(region.facing->angle * 180 / std::numbers::pi) +
+                         " degrees of the direction",
+         "enlarge the angle; where normals point into the part, reverse the direction");
   }
   const auto check_extent = [&] {
     if (extent(mesh) >= 1) return;
@@ -368,7 +374,8 @@ FaceMesh region_mesh(const Surface& surface, const ToolPathRegion& region, doubl
   if (region.disc) {
     std::vector<bool> kept(mesh.size());
     keep_disc(surface, *region.disc, spacing, mesh, kept);
-    keep(mesh, kept);
+    keep(mesh, kept, "lies within the radius around the center", "enlarge the radius");
+    check_extent();
   }
   return mesh;
 }

@@ -46,10 +46,10 @@ using ToolPathSeed = std::variant<AutomaticSeed, PlaneSeed, BoundarySeed, CurveS
 /// The part of the surface to cover, which fulfills all conditions.
 struct ToolPathRegion {
   std::vector<bool> rows;  ///< one per row: triangles and polygons whose corners are all true; empty: all rows
-  /// Triangles whose normals are at most this far from a direction.
+  /// Triangles that face a direction: (0, 0, 1) is the upper side of a part. What other parts hide is included.
   struct Facing {
     Vec3 direction;
-    double angle;  ///< radians
+    double angle;  ///< largest angle between the normal and the direction, radians, in [0, pi]
   };
   std::optional<Facing> facing;
   /// Triangles within this distance of a point, along the surface.
