@@ -626,6 +626,8 @@ TEST(ToolPath, RejectsWhatCannotBeCovered) {
   refuses({.spacing = 0.4, .region = {.disc = ToolPathRegion::Disc{Row{3}, 0.15}}}, "larger than the region");
   refuses({.spacing = 0.4, .region = {.disc = ToolPathRegion::Disc{Row{3}, 0.01}}}, "enlarge the radius");
   refuses({.spacing = 0.2, .step = -1}, "step is -1");
+  refuses({.spacing = 0.2, .tool_radius = 5}, "tool_radius is 5");
+  expect_error<ResourceExhausted>([&] { tool_path(surface, {.spacing = 0.2, .step = 1e-7}); }, "more than 2^24 poses");
   refuses({.spacing = 0.2, .lead = 2}, "lead is 2");
   const auto enclosed = [](const std::vector<Vec3>& points) {
     ToolPathRegion region;
@@ -635,6 +637,19 @@ TEST(ToolPath, RejectsWhatCannotBeCovered) {
   refuses({.spacing = 0.2, .region = enclosed({{1, 0, 0}, {0, 1, 0}, {0, 0, 2}})}, "point 2 of the region curve");
   refuses({.spacing = 0.2, .region = enclosed({{0.99, 0.07, 0}, {0.99, -0.07, 0}, {0.99, 0, 0.1}})},
           "larger than the region");
+  // Faces are named before they are refined.
+  const std::vector<Vec3> corners{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0}};
+  const std::vector<Triangle> flat{{0, 1, 2}, {0, 3, 1}};
+  const auto collinear = trimesh::TriangleMeshSurface::build(corners, flat);
+  expect_error<InvalidGeometry>([&] { tool_path(collinear, {.spacing = 0.2}); }, "the face around 1, 0, 0 has no area");
+  // Curves that join two components.
+  const auto boxes = surface_of(two_boxes());
+  ToolPathRegion both;
+  both.enclosures.push_back({{{1, 1, 1}, {6.5, 1.5, 1}, {1, 2, 1}}});
+  for (const ToolPathOptions& options :
+       {ToolPathOptions{.spacing = 0.2, .seed = CurveSeed{{{1, 1, 1}, {6.5, 1.5, 1}}, false}},
+        ToolPathOptions{.spacing = 0.2, .region = both}})
+    expect_error<InvalidArgument>([&] { tool_path(boxes, options); }, "does not connect the points of the");
   const double tube = 1.4;  // around the tube of a torus, which does not divide it
   const auto ring = surface_of(torus(500));
   expect_error<InvalidArgument>(

@@ -496,6 +496,13 @@ void add_poses(const Surface& surface, const PathDomain& domain, std::vector<Pas
   const double clearance = or_else(options.clearance, 1), max_link = or_else(options.max_link, 3);
   const Linker linker(surface, domain, normals, spacing, clearance, options.offset / spacing);
 
+  constexpr double max_poses = 1 << 24;
+  double length = 0;
+  for (const PassCurve& pass : passes) length += curve_length(domain.mesh, pass.curve);
+  if (length / step > max_poses)
+    throw ResourceExhausted("the step, " + detail::number(options.step) +
+                            ", requires more than 2^24 poses; enlarge it, or cover a smaller region");
+
   std::vector<TrackedPass> tracks(passes.size());
   detail::parallel_chunks(static_cast<Offset>(passes.size()), 1, options.threads, [&](Offset k, Offset) {
     const PassCurve& pass = passes[static_cast<std::size_t>(k)];

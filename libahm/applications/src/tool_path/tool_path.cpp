@@ -50,6 +50,21 @@ void check(const ToolPathOptions& o) {
       throw InvalidArgument(std::string(name) + " is " + detail::number(angle) + "; it must lie within (-pi/2, pi/2)");
 }
 
+/// Rejects faces that exact maps reject, before the refinement changes their numbers.
+void check_faces(const FaceMesh& mesh, double spacing) {
+  constexpr double min_height = 1e-13;  // as of `exact::PolyhedralSurface`
+  for (std::size_t f = 0; f < mesh.size(); ++f) {
+    double longest = 0;
+    for (std::size_t c = 0; c < 3; ++c)
+      longest = std::max(longest, distance(mesh.points[to_size(mesh.faces[f][c])],
+                                           mesh.points[to_size(mesh.faces[f][(c + 1) % 3])]));
+    if (2 * mesh.area(static_cast<Index>(f)) > min_height * longest * longest) continue;
+    const Vec3 at = spacing * mesh.position({static_cast<Index>(f), {1.0 / 3, 1.0 / 3, 1.0 / 3}});
+    throw InvalidGeometry("the face around " + detail::number(at[0]) + ", " + detail::number(at[1]) + ", " +
+                          detail::number(at[2]) + " has no area: its corners lie on a line; remove it or move its corners");
+  }
+}
+
 /// The longest diagonal of the bounding box.
 double extent(const FaceMesh& mesh) {
   Vec3 low = mesh.points.front(), high = low;
@@ -171,14 +186,20 @@ std::vector<MeshCurve> longest_loops(const PathDomain& domain) {
 }
 
 /// A curve in space, moved to the mesh.
-MeshCurve on_mesh(const PathDomain& domain, std::span<const Vec3> points, bool closed, double spacing) {
+/// @param name  of the curve, for messages: "seed"
+MeshCurve on_mesh(const PathDomain& domain, std::span<const Vec3> points, bool closed, double spacing,
+                  const std::string& name) {
   const FaceLocator locator(domain.mesh);
   std::vector<MeshPoint> found;
   for (const Vec3& p : points)
     if (const auto point = locator.nearest((1 / spacing) * p)) found.push_back(*point);
   if (found.size() < 2)
-    throw InvalidArgument("seed_off_surface", "the seed curve does not lie in the region",
+    throw InvalidArgument("seed_off_surface", "the " + name + " curve does not lie in the region",
                           "choose a curve on the part of the surface that is covered");
+  const Index component = domain.surface.component(found.front());
+  if (!std::ranges::all_of(found, [&](const MeshPoint& p) { return domain.surface.component(p) == component; }))
+    throw InvalidArgument("curve_disconnected", "the surface does not connect the points of the " + name + " curve",
+                          "use points of one component");
   return joined_curve(domain, found, closed && found.size() == points.size());
 }
 
@@ -263,7 +284,7 @@ struct SeedFinder {
   }
   std::vector<MeshCurve> operator()(const CurveSeed& curve) const {
     const SurfaceCurve drawn = drawn_curve(surface, curve.points, curve.closed, spacing, "seed", "seed_off_surface");
-    return {on_mesh(domain, drawn.points, curve.closed, spacing)};
+    return {on_mesh(domain, drawn.points, curve.closed, spacing, "seed")};
   }
   std::vector<MeshCurve> operator()(const LineSeed& line) const {
     const double length = extent(domain.mesh) * spacing;
@@ -292,7 +313,7 @@ struct SeedFinder {
       if (side < 0) std::reverse(half.begin(), half.end());
       points.insert(points.end(), half.begin() + (side > 0 && !points.empty() ? 1 : 0), half.end());
     }
-    return {without_returns(domain.mesh, on_mesh(domain, points, false, spacing),
+    return {without_returns(domain.mesh, on_mesh(domain, points, false, spacing, "seed"),
                             (1 / spacing) * surface.position(start))};
   }
 };
@@ -310,6 +331,7 @@ Index count_uncovered(const PathDomain& domain, const std::vector<MeshCurve>& se
 FaceMesh region_mesh(const Surface& surface, const ToolPathRegion& region, double spacing, double longest) {
   FaceMesh mesh = face_mesh(surface);
   for (Vec3& p : mesh.points) p = (1 / spacing) * p;
+  check_faces(mesh, spacing);
   const auto keep = [](FaceMesh& of, const std::vector<bool>& kept, const std::string& condition,
                        const std::string& remedy) {
     if (std::ranges::find(kept, true) == kept.end())
@@ -364,7 +386,7 @@ FaceMesh region_mesh(const Surface& surface, const ToolPathRegion& region, doubl
                             "a closed curve needs at least three");
     const PathDomain domain(std::move(mesh));
     const SurfaceCurve drawn = drawn_curve(surface, enclosure.points, true, spacing, "region", "region_off_surface");
-    const MeshCurve curve = on_mesh(domain, drawn.points, true, spacing);
+    const MeshCurve curve = on_mesh(domain, drawn.points, true, spacing, "region");
     if (!curve.closed)
       throw InvalidArgument("region_off_surface", "the region curve leaves the part that the other conditions select",
                             "draw the curve there");
@@ -384,6 +406,9 @@ ToolPath tool_path(const Surface& surface, const ToolPathOptions& options) {
   check(options);
   const PathDomain domain(region_mesh(surface, options.region, options.spacing, longest_side));
   const std::vector<MeshCurve> seeds = std::visit(SeedFinder{surface, domain, options.spacing}, options.seed);
+  if (const double across = options.spacing * extent(domain.mesh); options.tool_radius > across)
+    throw InvalidArgument("tool_radius is " + detail::number(options.tool_radius) + "; the region is only " +
+                          detail::number(across) + " across");
   const double phase = std::holds_alternative<BoundarySeed>(options.seed) ? 0.5 : 0;
   ToolPath path;
   path.spacing = options.spacing;

@@ -153,8 +153,9 @@ struct ToolPath {
 /// passes, or on the edge of the region. Passes are ordered by their nearest ends and improved by 2-opt exchanges.
 /// @throws InvalidArgument (a value that is not finite or out of range; faults "spacing_too_large": larger than the
 /// region, "seed_off_surface", "seed_along_normal": a line without a direction along the surface, "region_off_surface",
-/// "region_not_enclosed": a curve that does not divide the surface, "region_empty"; a surface without positions or triangles),
-/// InvalidGeometry (faces without area, needles: as `exact::exact_map`), ResourceExhausted, Cancelled
+/// "region_not_enclosed": a curve that does not divide the surface, "curve_disconnected": points in different components,
+/// "region_empty"; a surface without positions or triangles), InvalidGeometry (faces without area, needles: as
+/// `exact::exact_map`), ResourceExhausted (more than 2^26 triangles, more than 2^24 poses), Cancelled
 ToolPath tool_path(const Surface& surface, const ToolPathOptions& options);
 
 /// Whether a tool path covers a row, and why not.
