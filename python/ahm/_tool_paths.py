@@ -208,7 +208,7 @@ def tool_path(surface: SurfaceLike, spacing: float, *, seed: str = "auto", plane
         covered, too.
     inside, outside : (n, 3) positions on the surface. Cover only one side of the closed curve through them. The largest part
         into which it divides the surface is the outside, the others are the inside.
-    center, radius : cover only triangles within this distance along the surface of a point, which is given as in `line`.
+    center, radius : cover only triangles within this distance along the surface of a point, as in `line`.
     spiral : joins consecutive closed passes to spirals, which move by one spacing per turn. Passes that are open, or split,
         remain separate.
     step : longest distance between poses; None: a quarter of the spacing.

@@ -161,8 +161,7 @@ TEST_F(Coverage, JoinsClosedPassesToASpiral) {
   EXPECT_GT(number(json, "/covered"), 0.99);
   EXPECT_LT(number(json, "/double_covered"), 0.03);
   EXPECT_LE(json.at("passes").size(), 5U);
-  EXPECT_TRUE(
-      has(run_ok(command + " --facing 0,0,1 --max-angle 5 --seed-line 0,0,1 --direction 30").err, "no spiral"));
+  EXPECT_TRUE(has(run_ok(command + " --facing 0,0,1 --max-angle 5 --seed-line 0,0,1 --direction 30").err, "no spiral"));
 }
 
 TEST_F(Coverage, OfAWholePartIsWrittenForMachinesAndRobots) {
@@ -202,23 +201,26 @@ TEST_F(Coverage, OfAWholePartIsWrittenForMachinesAndRobots) {
 
 TEST_F(Coverage, RefusesPartsItCannotCover) {
   write("sphere.xyz", xyz(sphere(500)));
-  expect_refused("coverage sphere.xyz -o path.csv",
-                 {{"--whole --spacing 9", 1, {"the spacing, 9, is larger than the region"}},
-                  {"--whole --spacing 0.2 --seed-boundary", 1, {"no boundary"}},
-                  {"--whole --spacing 0.2 --seed-plane 0,0,4,0,0,1", 1, {"does not cross the region"}},
-                  {"--whole --spacing 0.2 --seed-plane 0,0,4", 2, {"six numbers"}},
-                  {"--whole --spacing 0.2 --seed-curve '0,0,1 0,0,3'", 1, {"point 1 of the seed curve"}},
-                  {"--whole --spacing 0.2 --inside '1,0,0 0,1,0 0,0,3'", 1, {"point 2 of the region curve"}},
-                  {"--whole --spacing 0.2 --inside '1,0,0 0,1,0'", 1, {"2 points", "at least three"}},
-                  {"--whole --spacing 0.2 --angle 30", 2, {"--angle", "--whole"}},
-                  {"--whole --spacing 0.2 --seed-line 0,0,3 --direction 1,0,0", 1, {"the point of the seed line is", "from the surface"}},
-                  {"--whole --spacing 0.2 --seed-line 0,0,1 --direction 0,0,1", 1, {"perpendicular to the surface"}},
-                  {"--whole --spacing 0.2 --source 0,0,3 --radius 1", 1, {"the center of the region is", "from the surface"}},
-                  {"--whole --spacing 0.2 --mask m", 1, {"--mask m"}},
-                  {"--whole --spacing 0.2 --facing 0,0,1 --max-angle 0.001", 1, {"no triangle lies in the region"}},
-                  {"--whole --spacing 0.2 --facing 0,0,1 --max-angle 200", 2, {"not between 0 and 180"}},
-                  {"--spacing 0.2 --clearance 1", 2, {"--clearance requires --whole"}},
-                  {"--spacing 0.2", 2, {"--source is required"}}});
+  expect_refused(
+      "coverage sphere.xyz -o path.csv",
+      {{"--whole --spacing 9", 1, {"the spacing, 9, is larger than the region"}},
+       {"--whole --spacing 0.2 --seed-boundary", 1, {"no boundary"}},
+       {"--whole --spacing 0.2 --seed-plane 0,0,4,0,0,1", 1, {"does not cross the region"}},
+       {"--whole --spacing 0.2 --seed-plane 0,0,4", 2, {"six numbers"}},
+       {"--whole --spacing 0.2 --seed-curve '0,0,1 0,0,3'", 1, {"point 1 of the seed curve"}},
+       {"--whole --spacing 0.2 --inside '1,0,0 0,1,0 0,0,3'", 1, {"point 2 of the region curve"}},
+       {"--whole --spacing 0.2 --inside '1,0,0 0,1,0'", 1, {"2 points", "at least three"}},
+       {"--whole --spacing 0.2 --angle 30", 2, {"--angle", "--whole"}},
+       {"--whole --spacing 0.2 --seed-line 0,0,3 --direction 1,0,0",
+        1,
+        {"the point of the seed line is", "from the surface"}},
+       {"--whole --spacing 0.2 --seed-line 0,0,1 --direction 0,0,1", 1, {"perpendicular to the surface"}},
+       {"--whole --spacing 0.2 --source 0,0,3 --radius 1", 1, {"the center of the region is", "from the surface"}},
+       {"--whole --spacing 0.2 --mask m", 1, {"--mask m"}},
+       {"--whole --spacing 0.2 --facing 0,0,1 --max-angle 0.001", 1, {"no triangle lies in the region"}},
+       {"--whole --spacing 0.2 --facing 0,0,1 --max-angle 200", 2, {"not between 0 and 180"}},
+       {"--spacing 0.2 --clearance 1", 2, {"--clearance requires --whole"}},
+       {"--spacing 0.2", 2, {"--source is required"}}});
 }
 
 using Isolines = InFolder;

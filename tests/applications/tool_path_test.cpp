@@ -574,9 +574,11 @@ TEST(ToolPath, MeasuresGiveTheReasonOfEveryRow) {
 TEST(ToolPath, CornersThatCoincideAreNoTriangles) {
   // A square whose middle is two points at one place, joined by two triangles without area.
   Mesh mesh = flat_square(3, 0);
-  const auto middle = static_cast<Index>(
-      std::ranges::min_element(mesh.positions, {}, [](const Vec3& p) { return norm(p - Vec3{0.5, 0.5, 0}); }) -
-      mesh.positions.begin());
+  const auto middle = static_cast<Index>(std::ranges::min_element(mesh.positions, {},
+                                                                  [](const Vec3& p) {
+                                                                    return norm(p - Vec3{0.5, 0.5, 0});
+                                                                  }) -
+                                         mesh.positions.begin());
   std::vector<Triangle> upper;
   std::vector<Index> ends;
   mesh.positions.push_back(mesh.positions[static_cast<std::size_t>(middle)]);
@@ -611,7 +613,11 @@ TEST(ToolPath, RejectsWhatCannotBeCovered) {
     expect_error<InvalidArgument>([&] { tool_path(surface, options); }, text);
   };
   refuses({}, "spacing is 0");
-  refuses({.spacing = 100}, "larger than the region");
+  for (const double large : {100.0, 1e308}) refuses({.spacing = large}, "larger than the region");
+  expect_error<ResourceExhausted>([&] { tool_path(surface, {.spacing = 1e-300}); }, "more than 2^26 triangles");
+  expect_error<ResourceExhausted>([&] { tool_path(surface, {.spacing = 1e-308}); }, "too small for double precision");
+  ToolPathRegion below{.facing = ToolPathRegion::Facing{{0, 0, -1}, 0.5}};
+  refuses({.spacing = 0.2, .seed = LineSeed{Vec3{0, 0, 1}, {1, 0, 0}}, .region = below}, "in the part that is covered");
   refuses({.spacing = 0.2, .seed = PlaneSeed{{0, 0, 5}, {0, 0, 1}}}, "does not cross the region");
   refuses({.spacing = 0.2, .seed = BoundarySeed{}}, "no boundary");
   refuses({.spacing = 0.2, .seed = LineSeed{Row{3}, {0, 0, 0}}}, "the seed line has no length");
@@ -620,7 +626,8 @@ TEST(ToolPath, RejectsWhatCannotBeCovered) {
   refuses({.spacing = 0.2, .seed = CurveSeed{{{0, 0, 1}, {0, 0, 3}}, false}}, "point 1 of the seed curve");
   refuses({.spacing = 0.2, .region = {.rows = std::vector<bool>(162, false)}}, "no triangle lies in the region");
   refuses({.spacing = 0.2, .region = {.rows = std::vector<bool>(3, true)}}, "3 rows");
-  refuses({.spacing = 0.2, .region = {.facing = ToolPathRegion::Facing{{0, 0, 1}, -0.1}}}, "angle of the region is -5.7");
+  refuses({.spacing = 0.2, .region = {.facing = ToolPathRegion::Facing{{0, 0, 1}, -0.1}}},
+          "angle of the region is -5.7");
   refuses({.spacing = 0.2, .region = {.facing = ToolPathRegion::Facing{{0, 0, 1}, 3.2}}}, "in [0, 180]");
   refuses({.spacing = 0.2, .region = {.facing = ToolPathRegion::Facing{{0, 0, 1}, 0}}}, "reverse the direction");
   refuses({.spacing = 0.4, .region = {.disc = ToolPathRegion::Disc{Row{3}, 0.15}}}, "larger than the region");

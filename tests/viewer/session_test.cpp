@@ -306,8 +306,8 @@ TEST_F(ViewerSession, CoversTheWholeSurface) {
     EXPECT_GT(path.at("covered").get<double>(), 0.99);
     EXPECT_FALSE(path.at("links").at("points").empty());
     EXPECT_EQ(path.at("command"), std::string("ahm coverage sphere.ply --whole --spacing 0.25 ") +
-                                      (spiral ? "--pattern spiral " : "") +
-                                      (drawn ? "--seed-curve '0 30' " : "") + "-o whole.csv");
+                                      (spiral ? "--pattern spiral " : "") + (drawn ? "--seed-curve '0 30' " : "") +
+                                      "-o whole.csv");
   }
   EXPECT_EQ(answer(on_sphere, "whole", {{"spacing", 1e-6}}).status, 400);
   EXPECT_EQ(answer(on_sphere, "whole", {{"spacing", 1e3}}).status, 400);

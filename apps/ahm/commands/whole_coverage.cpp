@@ -241,7 +241,8 @@ void offer_whole(CLI::App& app, WholeOptions& o) {
     return angle;
   };
   add("--max-angle", o.max_angle, half_turn, "DEG",
-      "Largest angle between the normal of the surface and --facing, 0 to 180 (default 45). 0,0,1 with 90 covers all that "
+      "Largest angle between the normal of the surface and --facing, 0 to 180 (default 45). 0,0,1 with 90 covers all "
+      "that "
       "is\nnot turned down")
       ->needs(facing);
   add("--inside", o.inside, parse_sources, "POINTS",
@@ -271,7 +272,8 @@ void offer_whole(CLI::App& app, WholeOptions& o) {
   add("--tilt", o.path.tilt, lean, "DEG", "The tool leans to the left of the travel by DEG degrees; < 0: to the right");
   add("--offset", o.path.offset, parse_positive, "D",
       "Distance of the poses from the surface, as the center of a ball of radius D on it");
-  add("--rows", o.rows, non_empty, "FILE", "Write for every row of INPUT whether it is covered, and why not, see below: .csv, .ply, ...");
+  add("--rows", o.rows, non_empty, "FILE",
+      "Write for every row of INPUT whether it is covered, and why not, see below: .csv, .ply, ...");
   offer_path_files(app, o.files, whole);
 }
 

@@ -534,8 +534,7 @@ struct Session::Impl {
     constexpr std::size_t most_levels = 1000;
     const auto values = io::column(geometry, request.word("column", io::column_names(geometry)));
     const std::vector<double> levels = level_multiples(*values, request.positive("every"));
-    if (levels.size() > most_levels)
-      throw InvalidArgument("request: more than 1000 levels; choose a larger \"every\"");
+    if (levels.size() > most_levels) throw InvalidArgument("request: more than 1000 levels; choose a larger \"every\"");
     std::vector<Isoline> lines = isolines(surface, *values, levels);
     if (lines.empty()) throw InvalidArgument("no triangle contains a level; choose a smaller step");
     return lines;

@@ -391,8 +391,8 @@ class Linker {
   const PathDomain& domain_;
   const SmoothNormals& normals_;
   double spacing_, clearance_, offset_, extent_ = 0;
-  Vec3 center_{};        ///< of the bounding box of the surface
-  double outside_ = 0;   ///< radius of a sphere around the surface
+  Vec3 center_{};       ///< of the bounding box of the surface
+  double outside_ = 0;  ///< radius of a sphere around the surface
 };
 
 /// Appends poses to a path. Positions are converted to world units.

@@ -54,14 +54,15 @@ void check(const ToolPathOptions& o) {
 void check_faces(const FaceMesh& mesh, double spacing) {
   constexpr double min_height = 1e-13;  // as of `exact::PolyhedralSurface`
   for (std::size_t f = 0; f < mesh.size(); ++f) {
-    double longest = 0;
-    for (std::size_t c = 0; c < 3; ++c)
-      longest = std::max(longest, distance(mesh.points[to_size(mesh.faces[f][c])],
-                                           mesh.points[to_size(mesh.faces[f][(c + 1) % 3])]));
-    if (2 * mesh.area(static_cast<Index>(f)) > min_height * longest * longest) continue;
+    const auto corner = [&](std::size_t c) { return mesh.points[to_size(mesh.faces[f][c])]; };
+    const Vec3 ab = corner(1) - corner(0), ac = corner(2) - corner(0), bc = corner(2) - corner(1);
+    const double longest = std::max({norm(ab), norm(ac), norm(bc)});
+    if (!std::isfinite(longest)) continue;  // the refinement rejects the spacing
+    if (longest > 0 && norm(cross((1 / longest) * ab, (1 / longest) * ac)) > min_height) continue;
     const Vec3 at = spacing * mesh.position({static_cast<Index>(f), {1.0 / 3, 1.0 / 3, 1.0 / 3}});
     throw InvalidGeometry("the face around " + detail::number(at[0]) + ", " + detail::number(at[1]) + ", " +
-                          detail::number(at[2]) + " has no area: its corners lie on a line; remove it or move its corners");
+                          detail::number(at[2]) +
+                          " has no area: its corners lie on a line; remove it or move its corners");
   }
 }
 
@@ -81,10 +82,9 @@ SurfacePoint point_near(const Surface& surface, const Vec3& position, double spa
                         std::string_view fault) {
   const ClosestPoint closest = surface.closest_point(position);
   if (closest.distance > largest_curve_distance * spacing)
-    throw InvalidArgument(fault,
-                          name + " is " + detail::number(closest.distance) +
-                              " from the surface, more than half of the spacing",
-                          "use a point on the surface");
+    throw InvalidArgument(
+        fault, name + " is " + detail::number(closest.distance) + " from the surface, more than half of the spacing",
+        "use a point on the surface");
   return closest.point;
 }
 
@@ -194,8 +194,8 @@ MeshCurve on_mesh(const PathDomain& domain, std::span<const Vec3> points, bool c
   for (const Vec3& p : points)
     if (const auto point = locator.nearest((1 / spacing) * p)) found.push_back(*point);
   if (found.size() < 2)
-    throw InvalidArgument("seed_off_surface", "the " + name + " curve does not lie in the region",
-                          "choose a curve on the part of the surface that is covered");
+    throw InvalidArgument("seed_off_surface", "the " + name + " curve does not lie in the part that is covered",
+                          "choose a curve there");
   const Index component = domain.surface.component(found.front());
   if (!std::ranges::all_of(found, [&](const MeshPoint& p) { return domain.surface.component(p) == component; }))
     throw InvalidArgument("curve_disconnected", "the surface does not connect the points of the " + name + " curve",
@@ -331,7 +331,6 @@ Index count_uncovered(const PathDomain& domain, const std::vector<MeshCurve>& se
 FaceMesh region_mesh(const Surface& surface, const ToolPathRegion& region, double spacing, double longest) {
   FaceMesh mesh = face_mesh(surface);
   for (Vec3& p : mesh.points) p = (1 / spacing) * p;
-  check_faces(mesh, spacing);
   const auto keep = [](FaceMesh& of, const std::vector<bool>& kept, const std::string& condition,
                        const std::string& remedy) {
     if (std::ranges::find(kept, true) == kept.end())
@@ -359,25 +358,32 @@ FaceMesh region_mesh(const Surface& surface, const ToolPathRegion& region, doubl
     if (!(length > 0 && std::isfinite(length)))
       throw InvalidArgument("the direction of the region is zero or not finite");
     if (!(region.facing->angle >= 0 && region.facing->angle <= std::numbers::pi))
-      throw InvalidArgument("the angle of the region is " + detail::number(region.facing->angle * 180 / std::numbers::pi) +
+      throw InvalidArgument("the angle of the region is " +
+                            detail::number(region.facing->angle * 180 / std::numbers::pi) +
                             " degrees; it must lie in [0, 180]");
     std::vector<bool> kept(mesh.size());
     for (std::size_t f = 0; f < kept.size(); ++f) {
       const Vec3 normal = mesh.area_normal(static_cast<Index>(f));
       kept[f] = dot(normal, region.facing->direction) >= std::cos(region.facing->angle) * norm(normal) * length;
     }
-    keep(mesh, kept, "has a normal within " + detail::number(region.facing->angle * 180 / std::numbers::pi) +
-                         " degrees of the direction",
+    keep(mesh, kept,
+         "has a normal within " + detail::number(region.facing->angle * 180 / std::numbers::pi) +
+             " degrees of the direction",
          "enlarge the angle; where normals point into the part, reverse the direction");
   }
   const auto check_extent = [&] {
-    if (extent(mesh) >= 1) return;
+    const double across = extent(mesh);
+    if (!std::isfinite(across))
+      throw ResourceExhausted("the spacing, " + detail::number(spacing) +
+                              ", is too small for double precision; enlarge it");
+    if (across >= 1) return;
     throw InvalidArgument("spacing_too_large",
                           "the spacing, " + detail::number(spacing) + ", is larger than the region, " +
-                              detail::number(spacing * extent(mesh)) + " across",
+                              detail::number(spacing * across) + " across",
                           "choose a smaller spacing");
   };
   check_extent();
+  check_faces(mesh, spacing);
   mesh = refined(mesh, longest);
   for (const ToolPathRegion::Enclosure& enclosure : region.enclosures) {
     if (enclosure.points.size() < 3)

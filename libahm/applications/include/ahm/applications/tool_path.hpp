@@ -165,13 +165,13 @@ enum class RowCoverage : std::uint8_t {
   no_pass,         ///< in a component of the region without a pass: the seed does not reach it, or it is too small
   outside_region,  ///< in no triangle of the region
   no_triangle,     ///< in no triangle of the surface: isolated points of clouds
-  removed,         ///< without a vertex: points removed from the cloud, for example outliers; vertices that no face uses
+  removed,  ///< without a vertex: points removed from the cloud, for example outliers; vertices that no face uses
 };
 
 /// How well a tool path covers a surface.
 struct ToolPathMeasures {
-  double area = 0;         ///< area of the region, world units squared
-  double covered = 0;      ///< share of the area within 0.6 spacings of a pass, along the surface
+  double area = 0;     ///< area of the region, world units squared
+  double covered = 0;  ///< share of the area within 0.6 spacings of a pass, along the surface
   /// Largest distance of a point of the region from the nearest pass, in spacings; 4: 4 or more, or not reached.
   double largest_gap = 0;
   /// Share of the pass length that is closer than 0.5 spacings, in space, to another pass, or to the same pass more than two
