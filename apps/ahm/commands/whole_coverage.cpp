@@ -109,6 +109,11 @@ void comment_on_long_triangles(const Input& input, Journal& journal) {
         100 * share, long_side));
 }
 
+/// The largest gap, which is measured up to 4 spacings.
+std::string gap_text(const ToolPathMeasures& measures) {
+  return fmt::format("{:.2f} spacings{}", measures.largest_gap, measures.largest_gap >= 4 ? " or more" : "");
+}
+
 /// The region of --mask: rows whose value is not zero.
 std::vector<bool> mask_of(const io::Geometry& geometry, const std::string& name) {
   std::vector<bool> rows;
@@ -185,20 +190,19 @@ void report(const std::string& input_path, const OutputOptions& output, const In
                            {"first", pass.begin},
                            {"points", pass.end - pass.begin}});
   }
-  deliver(
-      std::move(j),
-      fmt::format("{}{} of length {:.4g}, {} poses; links: {} on the surface, {} lifted{}, length {:.4g}\n"
-                  "covered: {:.2f} % of the area within 0.6 spacings; largest gap {:.2f} spacings; double: {:.2f} % of "
-                  "the passes\n",
-                  path.passes.size() == 1 ? "1 pass" : fmt::format("{} passes", path.passes.size()),
-                  spirals == 0   ? ""
-                  : spirals == 1 ? " (1 spiral)"
-                                 : fmt::format(" ({} spirals)", spirals),
-                  path.pass_length, path.poses.size(), path.surface_links, path.lifted_links,
-                  path.missing_links == 0 ? "" : fmt::format(", {} missing", path.missing_links), path.link_length,
-                  100 * measures.covered, measures.largest_gap, 100 * measures.double_covered) +
-          uncovered_rows(measures.rows),
-      output, journal);
+  deliver(std::move(j),
+          fmt::format("{}{} of length {:.4g}, {} poses; links: {} on the surface, {} lifted{}, length {:.4g}\n"
+                      "covered: {:.2f} % of the area within 0.6 spacings; largest gap {}; double: {:.2f} % of "
+                      "the passes\n",
+                      path.passes.size() == 1 ? "1 pass" : fmt::format("{} passes", path.passes.size()),
+                      spirals == 0   ? ""
+                      : spirals == 1 ? " (1 spiral)"
+                                     : fmt::format(" ({} spirals)", spirals),
+                      path.pass_length, path.poses.size(), path.surface_links, path.lifted_links,
+                      path.missing_links == 0 ? "" : fmt::format(", {} missing", path.missing_links), path.link_length,
+                      100 * measures.covered, gap_text(measures), 100 * measures.double_covered) +
+              uncovered_rows(measures.rows),
+          output, journal);
 }
 
 }  // namespace
@@ -318,9 +322,8 @@ void run_whole(const InputOptions& input_options, const OutputOptions& output, c
     journal.add_warning("no spiral: nowhere are three or more closed passes around each other; try another seed");
   if (measures.covered < 0.99 || measures.largest_gap > 1.25)
     journal.add_warning(
-        fmt::format("gaps: {:.2f} % of the area is farther than 0.6 spacings from a pass, the farthest point {:.2f} "
-                    "spacings",
-                    100 * (1 - measures.covered), measures.largest_gap));
+        fmt::format("gaps: {:.2f} % of the area is farther than 0.6 spacings from a pass, the farthest point {}",
+                    100 * (1 - measures.covered), gap_text(measures)));
   write_view(input_options, output, input, path, journal);
   journal.start("write");
   if (!options.rows.empty()) write_rows(options.rows, input.geometry, measures.rows);
