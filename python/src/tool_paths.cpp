@@ -4,6 +4,7 @@
 #include "ahm/applications/tool_path_text.hpp"
 #include "ahm/error.hpp"
 #include "compute.hpp"
+#include "errors.hpp"
 #include "map.hpp"
 #include "options.hpp"
 #include "parts.hpp"
