@@ -9,10 +9,11 @@ import numpy as np
 
 from . import _arguments as arguments
 from . import _core
+from . import _places as places
 from ._options import checked
 from ._progress import Progress, reporting
 from ._solvers import as_body
-from .typing import Array, Matrix, SurfaceLike, Vector
+from .typing import Array, Matrix, Source, SurfaceLike, Vector
 
 
 class Isoline(NamedTuple):
@@ -56,6 +57,7 @@ def isolines(surface: SurfaceLike, values: Vector, levels: Union[float, Vector, 
 
 
 _KINDS = np.array(["pass", "link", "approach", "retreat"])
+_COVERAGES = np.array(["covered", "gap", "no_pass", "outside_region", "no_triangle", "removed"])
 _ORIGINS = ("seed", "level", "cut_locus", "boundary", "spiral")
 
 
@@ -85,6 +87,9 @@ class ToolPath(NamedTuple):
     #: area, covered (share of the area within 0.6 spacings of a pass), largest_gap (in spacings), double_covered (share of
     #: the pass length), pass_length, link_length, surface_links, lifted_links, missing_links, uncovered_components
     measures: Dict[str, float]
+    #: (n,) "covered" (within 0.6 spacings of a pass), or why a row is not: "gap"; "no_pass", in a component that the seed does
+    #: not reach, or that is too small; "outside_region"; "no_triangle", isolated points of clouds; "removed", or used by no face
+    rows: np.ndarray
 
     @property
     def poses(self) -> np.ndarray:
@@ -146,15 +151,26 @@ class ToolPath(NamedTuple):
                 f"{100 * self.measures['covered']:.1f} % of the area covered>")
 
 
-def _seed(seed: str, plane: Optional[Tuple[Vector, Vector]], curve: Optional[Matrix]) -> Tuple[str, np.ndarray]:
-    if sum(given is not None for given in (plane, curve)) + (seed != "auto") > 1:
-        raise ValueError("seed: use one of seed, plane and curve")
+def _vector(value: Vector, name: str) -> np.ndarray:
+    along = arguments.vector(value, name)
+    if along is None:
+        raise TypeError(f"{name}: expected three numbers, got None")
+    return along
+
+
+def _seed(seed: str, plane: Optional[Tuple[Vector, Vector]], curve: Optional[Matrix],
+          line: Optional[Tuple[Source, Union[Vector, float]]]) -> Tuple[str, np.ndarray]:
+    """The kind of the seed, and its points and vectors. A line at an angle has none."""
+    if sum(given is not None for given in (plane, curve, line)) + (seed != "auto") > 1:
+        raise ValueError("seed: use one of seed, plane, curve and line")
+    if line is not None:
+        if not isinstance(line, (tuple, list)) or len(line) != 2:
+            raise TypeError("line: expected (point, direction)")
+        direction = arguments.unwrapped(line[1])
+        return "line", np.empty((0, 3)) if np.ndim(direction) == 0 else _vector(direction, "line[1]")[None]
     if plane is not None:
         point, normal = plane
-        along = arguments.vector(normal, "plane[1]")
-        if along is None:
-            raise TypeError("plane[1]: expected three numbers, got None")
-        return "plane", np.stack([arguments.floats(point, "plane[0]", (3,), finite=True), along])
+        return "plane", np.stack([arguments.floats(point, "plane[0]", (3,), finite=True), _vector(normal, "plane[1]")])
     if curve is not None:
         return "curve", arguments.floats(curve, "curve", (None, 3), finite=True)
     return arguments.choice(seed, "seed", ("auto", "boundary")), np.empty((0, 3))
@@ -167,9 +183,10 @@ def _require(name: str, given: bool, of: str, is_there: bool) -> None:
 
 
 def tool_path(surface: SurfaceLike, spacing: float, *, seed: str = "auto", plane: Optional[Tuple[Vector, Vector]] = None,
-              curve: Optional[Matrix] = None, closed: bool = False, rows: Union[Array, Sequence[bool], None] = None,
+              curve: Optional[Matrix] = None, closed: bool = False, line: Optional[Tuple[Source, Union[Vector, float]]] = None,
+              rows: Union[Array, Sequence[bool], None] = None,
               facing: Optional[Vector] = None, max_angle: Optional[float] = None, inside: Optional[Matrix] = None,
-              outside: Optional[Matrix] = None, spiral: bool = False,
+              outside: Optional[Matrix] = None, center: Optional[Source] = None, radius: Optional[float] = None, spiral: bool = False,
               step: Optional[float] = None, chord_error: Optional[float] = None, tool_radius: Optional[float] = None,
               clearance: Optional[float] = None, max_link: Optional[float] = None, one_way: bool = False,
               lead: float = 0, tilt: float = 0, offset: Optional[float] = None,
@@ -182,10 +199,16 @@ def tool_path(surface: SurfaceLike, spacing: float, *, seed: str = "auto", plane
         "boundary", parallel to the longest boundary loop, from half a spacing on.
     plane : (point, normal): passes parallel to the section with this plane.
     curve : (n, 3) positions on the surface: passes parallel to the curve through them; `closed` joins its ends.
+    line : (point, direction): passes parallel to the straight line through a point of the surface, in both directions. The
+        point is a row, a position, `(face, barycentric)`, or `((row, row), t)`; the direction a vector in space, or an angle
+        in radians from the u axis of a log map at the point, counterclockwise.
     rows : (n,) bool, cover only triangles whose corners are all True.
-    facing, max_angle : cover only triangles whose normal is within `max_angle` (radians; None: pi / 4) of the vector `facing`.
+    facing, max_angle : cover only what faces a direction, a vector in space: [0, 0, 1] is the upper side of a part. The angle
+        between the normal and the vector is at most `max_angle` (radians, in [0, pi]; None: pi / 4). What other parts hide is
+        covered, too.
     inside, outside : (n, 3) positions on the surface. Cover only one side of the closed curve through them. The largest part
         into which it divides the surface is the outside, the others are the inside.
+    center, radius : cover only triangles within this distance along the surface of a point, as in `line`.
     spiral : joins consecutive closed passes to spirals, which move by one spacing per turn. Passes that are open, or split,
         remain separate.
     step : longest distance between poses; None: a quarter of the spacing.
@@ -209,7 +232,9 @@ def tool_path(surface: SurfaceLike, spacing: float, *, seed: str = "auto", plane
     """
     on = as_body(surface)
     apart = arguments.real(spacing, "spacing", positive=True)
-    kind, points = _seed(seed, plane, curve)
+    kind, points = _seed(seed, plane, curve, line)
+    start = None if line is None else places.point(line[0], "line[0]", on)
+    turn = 0.0 if line is None or len(points) else arguments.real(line[1], "line[1]")
     mask = np.empty(0, np.uint8)
     if rows is not None:
         given = np.asarray(arguments.unwrapped(rows))
@@ -220,11 +245,14 @@ def tool_path(surface: SurfaceLike, spacing: float, *, seed: str = "auto", plane
     is_closed_curve = arguments.flag(closed, "closed")
     _require("closed", is_closed_curve, "curve", curve is not None)
     _require("max_angle", max_angle is not None, "facing", facing is not None)
+    _require("radius", radius is not None, "center", center is not None)
+    _require("center", center is not None, "radius", radius is not None)
+    middle = None if center is None else places.point(center, "center", on)
     angle = math.pi / 4 if max_angle is None else arguments.real(max_angle, "max_angle")
     within, without = (np.empty((0, 3)) if side is None else arguments.floats(side, name, (None, 3), finite=True)
                        for name, side in (("inside", inside), ("outside", outside)))
     lengths = {"chord_error": chord_error, "tool_radius": tool_radius, "clearance": clearance, "max_link": max_link,
-               "offset": offset}
+               "offset": offset, "radius": radius}
     options = checked(step=step, threads=threads)
     options["one_way"], options["spiral"] = arguments.flag(one_way, "one_way"), arguments.flag(spiral, "spiral")
     options["lead"], options["tilt"] = arguments.real(lead, "lead"), arguments.real(tilt, "tilt")
@@ -232,9 +260,10 @@ def tool_path(surface: SurfaceLike, spacing: float, *, seed: str = "auto", plane
         if length is not None:
             options[name] = arguments.real(length, name, positive=True)
     with reporting(progress) as report:
-        position, contact, axis, travel, quaternion, number, motion, arclength, passes, measures = _core.tool_path(
-            on._body, apart, kind, points, is_closed_curve, mask,
-            np.empty(0) if toward is None else toward, angle, within, without, options, report)
+        position, contact, axis, travel, quaternion, number, motion, arclength, passes, measures, coverage = _core.tool_path(
+            on._body, apart, kind, points, is_closed_curve, start, turn, mask,
+            np.empty(0) if toward is None else toward, angle, within, without, middle, options, report)
     made = [ToolPass(begin, end, is_closed, _ORIGINS[origin], distance, length)
             for begin, end, is_closed, origin, distance, length in passes]
-    return ToolPath(position, contact, axis, travel, quaternion, number, _KINDS[motion], arclength, made, measures)
+    return ToolPath(position, contact, axis, travel, quaternion, number, _KINDS[motion], arclength, made, measures,
+                    _COVERAGES[coverage])

@@ -4,6 +4,7 @@
 #include "ahm/applications/tool_path_text.hpp"
 #include "ahm/error.hpp"
 #include "compute.hpp"
+#include "errors.hpp"
 #include "map.hpp"
 #include "options.hpp"
 #include "parts.hpp"
@@ -37,17 +38,36 @@ ToolPathSeed seed_of(const std::string& kind, const Doubles& numbers_of_seed, bo
   return AutomaticSeed{};
 }
 
-/// @param seed    auto, boundary, plane or curve
-/// @param points  (n, 3): point and normal of the plane, points of the curve
+/// The seed line through a point. @param direction  (1, 3) a vector in space, or empty
+/// @param angle  from the u axis, if there is no vector
+LineSeed line_of(const Body& body, const py::tuple& start, const Doubles& direction, double angle) {
+  const Places at = places(start);
+  return naming(at.where(0), [&]() -> LineSeed {
+    const SurfacePoint point = body.point(at.places[0]);
+    const std::span<const Vec3> vector = vectors(direction);
+    return {at.places[0], vector.empty() ? body.surface_for("a tool path").direction(point, angle) : vector[0]};
+  });
+}
+
+/// @param seed    auto, boundary, plane, curve or line
+/// @param points  (n, 3): point and normal of the plane, points of the curve, direction of the line
+/// @param start   point of the line, or None. @param angle  of the line, if `points` is empty
 /// @param mask    empty, or one byte per row
 /// @param facing  empty, or a direction
+/// @param center  of the disc with the radius in the options, or None
 /// @param inside, outside  empty, or the points of closed curves
 /// @return position, contact, axis, travel, quaternion, pass, kind, arclength of the poses; begin, end, closed, kind, distance,
-/// length of the passes; measures and links
+/// length of the passes; measures and links; coverage of the rows
 py::tuple tool_path_of(const BodyPtr& body, double spacing, const std::string& seed, const Doubles& points, bool closed,
-                       const Bytes& mask, const Doubles& facing, double max_angle, const Doubles& inside,
-                       const Doubles& outside, const py::dict& options, const py::object& report) {
+                       const py::object& start, double angle, const Bytes& mask, const Doubles& facing,
+                       double max_angle, const Doubles& inside, const Doubles& outside, const py::object& center,
+                       const py::dict& options, const py::object& report) {
   ToolPathOptions o{.spacing = spacing, .seed = seed_of(seed, points, closed)};
+  if (!start.is_none()) o.seed = line_of(*body, start.cast<py::tuple>(), points, angle);
+  if (!center.is_none()) {
+    o.region.disc = {places(center.cast<py::tuple>()).places[0], 0};
+    read(options, "radius", o.region.disc->radius);
+  }
   for (const std::uint8_t row : numbers(mask)) o.region.rows.push_back(row != 0);
   if (const std::span<const double> d = numbers(facing); !d.empty())
     o.region.facing = ToolPathRegion::Facing{{d[0], d[1], d[2]}, max_angle};
@@ -87,6 +107,8 @@ py::tuple tool_path_of(const BodyPtr& body, double spacing, const std::string& s
   py::list passes;
   for (const ToolPass& p : path.passes)
     passes.append(py::make_tuple(p.begin, p.end, p.closed, static_cast<int>(p.origin), p.distance, p.length));
+  std::vector<std::uint8_t> rows;
+  for (const RowCoverage row : measures.rows) rows.push_back(static_cast<std::uint8_t>(row));
   const py::ssize_t n = length(quaternion);
   return py::make_tuple(
       owned(std::move(position)), owned(std::move(contact)), owned(std::move(axis)), owned(std::move(travel)),
@@ -96,7 +118,8 @@ py::tuple tool_path_of(const BodyPtr& body, double spacing, const std::string& s
                "double_covered"_a = measures.double_covered, "pass_length"_a = path.pass_length,
                "link_length"_a = path.link_length, "surface_links"_a = path.surface_links,
                "lifted_links"_a = path.lifted_links, "missing_links"_a = path.missing_links,
-               "uncovered_components"_a = path.uncovered_components));
+               "uncovered_components"_a = path.uncovered_components),
+      owned(std::move(rows)));
 }
 
 /// The arrays of a path as poses.

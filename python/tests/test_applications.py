@@ -1,5 +1,7 @@
 """Fields, geodesics, local maps and applications against closed forms and each other."""
 
+import math
+
 import numpy as np
 import pytest
 from scipy.sparse import csgraph
@@ -256,6 +258,37 @@ def test_a_tool_path_covers_a_box_and_its_top():
     for arguments, message in (((5.1e3,), "larger than the region"), ((-1,), "spacing"), ((1, "top"), "seed")):
         with pytest.raises(ValueError, match=message):
             ahm.tool_path(box, arguments[0], **({"seed": arguments[1]} if len(arguments) > 1 else {}))
+
+
+def test_tool_paths_start_at_lines_and_cover_discs():
+    points, faces = ahm.shapes.plane(41, 31)  # 40 by 30 units
+    plate = ahm.TriangleMesh(points, faces)
+    middle = [20.0, 15.0, 0.0]
+    row = int(np.argmin(np.linalg.norm(points - middle, axis=1)))
+    u = ahm.log_map(plate, row).source.axes[0]
+    for line, along in (((row, [1, 2, 0]), [1, 2]), ((middle, [1, 2, 0]), [1, 2]), ((row, math.pi / 2), [-u[1], u[0]])):
+        path = ahm.tool_path(plate, 4, line=line)
+        seeds = [p for p in path.passes if p.kind == "seed"]
+        assert len(seeds) == 1 and path.measures["covered"] > 0.99
+        offset = path.position[seeds[0].begin:seeds[0].end, :2] - middle[:2]
+        assert np.abs(offset @ [-along[1], along[0]]).max() < 1e-9 * np.abs(offset).max()
+    for center in (row, middle):
+        disc = ahm.tool_path(plate, 1, center=center, radius=9.0)
+        assert np.linalg.norm(disc.position[disc.kind == "pass"] - middle, axis=1).max() < 9 + 1e-9
+        assert math.pi * 8.6**2 < disc.measures["area"] < math.pi * 9**2  # whole triangles with sides up to 0.4 spacings
+    for arguments, message in (({"line": ([20, 15, 9.0], [1, 0, 0])}, "the point of the seed line is 9 from the surface"),
+                               ({"line": (row, [0, 0, 1])}, "perpendicular to the surface"),
+                               ({"line": (row, 1.0), "seed": "boundary"}, "use one of seed, plane, curve and line"),
+                               ({"line": (5000, 1.0)}, r"line\[0\]: row 5000 is out of range"),
+                               ({"line": (row, math.nan)}, r"line\[1\]"),
+                               ({"center": [20, 15, 9.0], "radius": 5}, "the center of the region is 9 from the surface"),
+                               ({"center": row}, "center: has no effect without radius"),
+                               ({"radius": 3}, "radius: has no effect without center"),
+                               ({"center": row, "radius": -1}, "radius")):
+        with pytest.raises(ValueError, match=message):
+            ahm.tool_path(plate, 4, **arguments)
+    with pytest.raises(TypeError, match=r"line: expected \(point, direction\)"):
+        ahm.tool_path(plate, 4, line=row)
 
 
 def test_poses_of_a_tool_path_are_rotations_by_the_quaternion():

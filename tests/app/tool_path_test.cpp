@@ -1,6 +1,8 @@
 // Coverage paths, and points at coordinates of a map.
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <random>
 
 #include "program.hpp"
 #include "shapes.hpp"
@@ -120,6 +122,37 @@ TEST_F(Coverage, CoversAWholePart) {
   }
 }
 
+// A scan of a sphere without a cap, with outliers and a point without return.
+TEST_F(Coverage, GivesTheReasonOfEveryRowOfAScan) {
+  Points scan;
+  for (const Vec3& p : sphere(3000))
+    if (p[2] < 0.7) scan.push_back(p);
+  const std::size_t good = scan.size();
+  for (const Vec3& p : {Vec3{0, 0, 9}, Vec3{0, 20, 0}, Vec3{40, 0, 0}}) scan.push_back(p);
+  write("scan.xyz", xyz(scan) + "nan 0 0\n");
+  const auto json = summary("coverage scan.xyz --drop-nan --whole --spacing 0.2 -o path.csv --rows rows.csv");
+  const auto rows = read_csv("rows.csv");
+  ASSERT_EQ(rows.size(), good + 4);
+  std::map<std::string, std::size_t> counts;
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    const std::string& reason = rows[r].status;
+    ++counts[reason];
+    if (r < good) EXPECT_TRUE(reason == "covered" || reason == "gap") << reason;
+    if (r >= good) EXPECT_TRUE(reason == "removed" || reason == "no_triangle") << reason;
+  }
+  EXPECT_GT(counts["covered"], 0.99 * static_cast<double>(good));
+  for (const auto& [reason, count] : counts) expect_values(json, {{"/rows/" + reason, count}});
+  EXPECT_TRUE(has(run_ok("coverage scan.xyz --drop-nan --whole --spacing 0.2 -o path.csv").out, "rows not covered: "));
+  // Outliers that triangles join are named.
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> far(-4, 4);
+  for (int k = 0; k < 40; ++k) scan.push_back({far(random), far(random), far(random)});
+  write("scan.xyz", xyz(scan));
+  EXPECT_TRUE(has(run_ok("coverage scan.xyz --whole --spacing 0.3 -o path.csv").err, "between outliers"));
+  expect_refused("coverage scan.xyz --whole --spacing 0.3 -o path.csv",
+                 {{"--rows path.csv", 1, {"--rows", "the same file"}}, {"--rows rows.gif", 1, {"rows.gif"}}});
+}
+
 TEST_F(Coverage, JoinsClosedPassesToASpiral) {
   write("sphere.xyz", xyz(sphere(3000)));
   const std::string command = "coverage sphere.xyz --whole --spacing 0.1 --pattern spiral -o path.csv";
@@ -128,8 +161,7 @@ TEST_F(Coverage, JoinsClosedPassesToASpiral) {
   EXPECT_GT(number(json, "/covered"), 0.99);
   EXPECT_LT(number(json, "/double_covered"), 0.03);
   EXPECT_LE(json.at("passes").size(), 5U);
-  EXPECT_TRUE(
-      has(run_ok(command + " --facing 0,0,1 --max-angle 5 --seed-line 0,0,1 --direction 1,0,0").err, "no spiral"));
+  EXPECT_TRUE(has(run_ok(command + " --facing 0,0,1 --max-angle 5 --seed-line 0,0,1 --direction 30").err, "no spiral"));
 }
 
 TEST_F(Coverage, OfAWholePartIsWrittenForMachinesAndRobots) {
@@ -169,22 +201,26 @@ TEST_F(Coverage, OfAWholePartIsWrittenForMachinesAndRobots) {
 
 TEST_F(Coverage, RefusesPartsItCannotCover) {
   write("sphere.xyz", xyz(sphere(500)));
-  expect_refused("coverage sphere.xyz -o path.csv",
-                 {{"--whole --spacing 9", 1, {"the spacing, 9, is larger than the region"}},
-                  {"--whole --spacing 0.2 --seed-boundary", 1, {"no boundary"}},
-                  {"--whole --spacing 0.2 --seed-plane 0,0,4,0,0,1", 1, {"does not cross the region"}},
-                  {"--whole --spacing 0.2 --seed-plane 0,0,4", 2, {"six numbers"}},
-                  {"--whole --spacing 0.2 --seed-curve '0,0,1 0,0,3'", 1, {"point 1 of the seed curve"}},
-                  {"--whole --spacing 0.2 --inside '1,0,0 0,1,0 0,0,3'", 1, {"point 2 of the region curve"}},
-                  {"--whole --spacing 0.2 --inside '1,0,0 0,1,0'", 1, {"2 points", "at least three"}},
-                  {"--whole --spacing 0.2 --angle 30", 2, {"--angle", "--whole"}},
-                  {"--whole --spacing 0.2 --seed-line 0,0,3 --direction 1,0,0", 1, {"2 from the surface"}},
-                  {"--whole --spacing 0.2 --seed-line 0,0,1 --direction 0,0,1", 1, {"perpendicular to the surface"}},
-                  {"--whole --spacing 0.2 --source 0,0,3 --radius 1", 1, {"2 from the surface"}},
-                  {"--whole --spacing 0.2 --mask m", 1, {"--mask m"}},
-                  {"--whole --spacing 0.2 --facing 0,0,1 --max-angle 0.001", 1, {"no triangle lies in the region"}},
-                  {"--spacing 0.2 --clearance 1", 2, {"--clearance requires --whole"}},
-                  {"--spacing 0.2", 2, {"--source is required"}}});
+  expect_refused(
+      "coverage sphere.xyz -o path.csv",
+      {{"--whole --spacing 9", 1, {"the spacing, 9, is larger than the region"}},
+       {"--whole --spacing 0.2 --seed-boundary", 1, {"no boundary"}},
+       {"--whole --spacing 0.2 --seed-plane 0,0,4,0,0,1", 1, {"does not cross the region"}},
+       {"--whole --spacing 0.2 --seed-plane 0,0,4", 2, {"six numbers"}},
+       {"--whole --spacing 0.2 --seed-curve '0,0,1 0,0,3'", 1, {"point 1 of the seed curve"}},
+       {"--whole --spacing 0.2 --inside '1,0,0 0,1,0 0,0,3'", 1, {"point 2 of the region curve"}},
+       {"--whole --spacing 0.2 --inside '1,0,0 0,1,0'", 1, {"2 points", "at least three"}},
+       {"--whole --spacing 0.2 --angle 30", 2, {"--angle", "--whole"}},
+       {"--whole --spacing 0.2 --seed-line 0,0,3 --direction 1,0,0",
+        1,
+        {"the point of the seed line is", "from the surface"}},
+       {"--whole --spacing 0.2 --seed-line 0,0,1 --direction 0,0,1", 1, {"perpendicular to the surface"}},
+       {"--whole --spacing 0.2 --source 0,0,3 --radius 1", 1, {"the center of the region is", "from the surface"}},
+       {"--whole --spacing 0.2 --mask m", 1, {"--mask m"}},
+       {"--whole --spacing 0.2 --facing 0,0,1 --max-angle 0.001", 1, {"no triangle lies in the region"}},
+       {"--whole --spacing 0.2 --facing 0,0,1 --max-angle 200", 2, {"not between 0 and 180"}},
+       {"--spacing 0.2 --clearance 1", 2, {"--clearance requires --whole"}},
+       {"--spacing 0.2", 2, {"--source is required"}}});
 }
 
 using Isolines = InFolder;

@@ -103,6 +103,35 @@ TEST(ToolPath, CoversATorus) { expect_path(torus(1000), 0.2); }
 TEST(ToolPath, CoversAPlateWithHoles) { expect_path(holed_plate(), 0.25); }
 TEST(ToolPath, CoversAPlateFromItsBoundary) { expect_path(holed_plate(), 0.25, BoundarySeed{}); }
 TEST(ToolPath, CoversSeveralComponents) { expect_path(two_boxes(), 0.25); }
+/// Eight spheres on a cubic lattice, 0.4 apart, with a ninth between them that touches none.
+Mesh cluster() {
+  const Mesh ball = icosphere(3);
+  Mesh result = ball;
+  for (int k = 1; k < 8; ++k) result = joined(result, ball, {2.4 * (k & 1), 1.2 * (k & 2), 0.6 * (k & 4)});
+  Mesh small = ball;
+  for (Vec3& p : small.positions) p = 0.5 * p;
+  return joined(result, small, {1.2, 1.2, 1.2});
+}
+
+TEST(ToolPath, LinksComponentsAroundEachOther) {
+  expect_path(cluster(), 0.4);
+  // A sphere between two walls.
+  const Mesh walls = joined(box({8, 0.6, 8}), box({8, 0.6, 8}), {0, 4.2, 0});
+  expect_path(joined(walls, icosphere(4), {4, 2.4, 4}), 0.4);
+}
+
+TEST(ToolPath, CountsLinksThatAreMissing) {
+  // No path leads to a sphere in a sphere.
+  Mesh inner = icosphere(4);
+  for (Vec3& p : inner.positions) p = 0.5 * p;
+  const Mesh nested = joined(icosphere(4), inner);
+  const auto surface = surface_of(nested);
+  const ToolPath path = tool_path(surface, {.spacing = 0.2});
+  EXPECT_EQ(path.missing_links, 1);
+  EXPECT_EQ(path.surface_links + path.lifted_links + path.missing_links, std::ssize(path.passes) - 1);
+  EXPECT_GE(tool_path_measures(surface, path).covered, 0.99);
+}
+
 TEST(ToolPath, CoversABoxFromASectionWithAPlane) { expect_path(box({4, 3, 2}), 0.3, PlaneSeed{{1, 1, 1}, {1, 2, 3}}); }
 
 TEST(ToolPath, PassesOnACylinderAreEquallySpaced) {
@@ -509,13 +538,86 @@ TEST(ToolPath, MeasuresFindGapsAndDoublePasses) {
   EXPECT_GT(tool_path_measures(surface, path).double_covered, 0.9);
 }
 
+TEST(ToolPath, MeasuresGiveTheReasonOfEveryRow) {
+  // A square, a triangle that the seed does not reach, a vertex without faces.
+  Mesh mesh = flat_square(21, 0);
+  const auto square = static_cast<std::size_t>(mesh.vertices());
+  mesh.faces.push_back({mesh.vertices(), mesh.vertices() + 1, mesh.vertices() + 2});
+  for (const Vec3& p : {Vec3{3, 0, 0}, {3.01, 0, 0}, {3, 0.01, 0}, {5, 0, 0}}) mesh.positions.push_back(p);
+  const auto surface = surface_of(mesh);
+  const auto reasons = [&](double spacing, const ToolPathRegion& region) {
+    const PlaneSeed middle{{0.5, 0.5, 0}, {0, 1, 0}};
+    const ToolPath path = tool_path(surface, {.spacing = spacing, .seed = middle, .region = region});
+    ToolPathMeasures measures = tool_path_measures(surface, path, region);
+    EXPECT_EQ(measures.rows.size(), mesh.positions.size());
+    return measures.rows;
+  };
+  for (const bool is_part : {false, true}) {
+    const ToolPathRegion region{.facing = is_part ? std::optional(ToolPathRegion::Facing{{0, 0, 1}, 1}) : std::nullopt};
+    const std::vector<RowCoverage> rows = reasons(0.1, region);
+    for (std::size_t r = 0; r < square; ++r) EXPECT_EQ(rows[r], RowCoverage::covered);
+    for (std::size_t r = square; r < square + 3; ++r) EXPECT_EQ(rows[r], RowCoverage::no_pass);
+    EXPECT_EQ(rows.back(), RowCoverage::removed);
+  }
+  std::vector<bool> left;
+  for (const Vec3& p : mesh.positions) left.push_back(p[0] < 0.51);
+  const std::vector<RowCoverage> half = reasons(0.1, {.rows = left});
+  for (std::size_t r = 0; r < square + 3; ++r)
+    EXPECT_EQ(half[r], left[r] ? RowCoverage::covered : RowCoverage::outside_region);
+  // Passes at twice the spacing leave gaps.
+  ToolPath path = tool_path(surface, {.spacing = 0.1});
+  path.spacing = 0.05;
+  const std::vector<RowCoverage> rows = tool_path_measures(surface, path).rows;
+  EXPECT_GT(std::ranges::count(rows, RowCoverage::gap), 20);
+}
+
+TEST(ToolPath, CornersThatCoincideAreNoTriangles) {
+  // A square whose middle is two points at one place, joined by two triangles without area.
+  Mesh mesh = flat_square(3, 0);
+  const auto middle = static_cast<Index>(std::ranges::min_element(mesh.positions, {},
+                                                                  [](const Vec3& p) {
+                                                                    return norm(p - Vec3{0.5, 0.5, 0});
+                                                                  }) -
+                                         mesh.positions.begin());
+  std::vector<Triangle> upper;
+  std::vector<Index> ends;
+  mesh.positions.push_back(mesh.positions[static_cast<std::size_t>(middle)]);
+  const Index copy = mesh.vertices() - 1;
+  const auto is_upper = [&](const Triangle& f) {
+    Vec3 sum{};
+    for (const Index p : f) sum = sum + mesh.positions[static_cast<std::size_t>(p)];
+    return sum[1] / 3 > 0.5;
+  };
+  for (Triangle& f : mesh.faces) {
+    const bool above = is_upper(f);
+    for (Index& p : f)
+      if (p == middle && above) p = copy;
+  }
+  for (std::size_t p = 0; p + 1 < mesh.positions.size(); ++p) {
+    const Vec3& at = mesh.positions[p];
+    if (std::abs(at[1] - 0.5) > 1e-9 || static_cast<Index>(p) == middle) continue;
+    mesh.faces.push_back(at[0] < 0.5 ? Triangle{static_cast<Index>(p), middle, copy}
+                                     : Triangle{static_cast<Index>(p), copy, middle});
+  }
+  const auto surface = surface_of(mesh);
+  const ToolPath path = tool_path(surface, {.spacing = 0.1});
+  const ToolPathMeasures measures = tool_path_measures(surface, path);
+  EXPECT_NEAR(measures.area, 1, 1e-9);
+  EXPECT_GE(measures.covered, 0.99);
+  EXPECT_EQ(path.uncovered_components, 0);
+}
+
 TEST(ToolPath, RejectsWhatCannotBeCovered) {
   const auto surface = surface_of(icosphere(4));
   const auto refuses = [&](ToolPathOptions options, const std::string& text) {
     expect_error<InvalidArgument>([&] { tool_path(surface, options); }, text);
   };
   refuses({}, "spacing is 0");
-  refuses({.spacing = 100}, "larger than the region");
+  for (const double large : {100.0, 1e308}) refuses({.spacing = large}, "larger than the region");
+  expect_error<ResourceExhausted>([&] { tool_path(surface, {.spacing = 1e-300}); }, "more than 2^26 triangles");
+  expect_error<ResourceExhausted>([&] { tool_path(surface, {.spacing = 1e-308}); }, "too small for double precision");
+  ToolPathRegion below{.facing = ToolPathRegion::Facing{{0, 0, -1}, 0.5}};
+  refuses({.spacing = 0.2, .seed = LineSeed{Vec3{0, 0, 1}, {1, 0, 0}}, .region = below}, "in the part that is covered");
   refuses({.spacing = 0.2, .seed = PlaneSeed{{0, 0, 5}, {0, 0, 1}}}, "does not cross the region");
   refuses({.spacing = 0.2, .seed = BoundarySeed{}}, "no boundary");
   refuses({.spacing = 0.2, .seed = LineSeed{Row{3}, {0, 0, 0}}}, "the seed line has no length");
@@ -524,7 +626,15 @@ TEST(ToolPath, RejectsWhatCannotBeCovered) {
   refuses({.spacing = 0.2, .seed = CurveSeed{{{0, 0, 1}, {0, 0, 3}}, false}}, "point 1 of the seed curve");
   refuses({.spacing = 0.2, .region = {.rows = std::vector<bool>(162, false)}}, "no triangle lies in the region");
   refuses({.spacing = 0.2, .region = {.rows = std::vector<bool>(3, true)}}, "3 rows");
+  refuses({.spacing = 0.2, .region = {.facing = ToolPathRegion::Facing{{0, 0, 1}, -0.1}}},
+          "angle of the region is -5.7");
+  refuses({.spacing = 0.2, .region = {.facing = ToolPathRegion::Facing{{0, 0, 1}, 3.2}}}, "in [0, 180]");
+  refuses({.spacing = 0.2, .region = {.facing = ToolPathRegion::Facing{{0, 0, 1}, 0}}}, "reverse the direction");
+  refuses({.spacing = 0.4, .region = {.disc = ToolPathRegion::Disc{Row{3}, 0.15}}}, "larger than the region");
+  refuses({.spacing = 0.4, .region = {.disc = ToolPathRegion::Disc{Row{3}, 0.01}}}, "enlarge the radius");
   refuses({.spacing = 0.2, .step = -1}, "step is -1");
+  refuses({.spacing = 0.2, .tool_radius = 5}, "tool_radius is 5");
+  expect_error<ResourceExhausted>([&] { tool_path(surface, {.spacing = 0.2, .step = 1e-7}); }, "more than 2^24 poses");
   refuses({.spacing = 0.2, .lead = 2}, "lead is 2");
   const auto enclosed = [](const std::vector<Vec3>& points) {
     ToolPathRegion region;
@@ -534,6 +644,19 @@ TEST(ToolPath, RejectsWhatCannotBeCovered) {
   refuses({.spacing = 0.2, .region = enclosed({{1, 0, 0}, {0, 1, 0}, {0, 0, 2}})}, "point 2 of the region curve");
   refuses({.spacing = 0.2, .region = enclosed({{0.99, 0.07, 0}, {0.99, -0.07, 0}, {0.99, 0, 0.1}})},
           "larger than the region");
+  // Faces are named before they are refined.
+  const std::vector<Vec3> corners{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0}};
+  const std::vector<Triangle> flat{{0, 1, 2}, {0, 3, 1}};
+  const auto collinear = trimesh::TriangleMeshSurface::build(corners, flat);
+  expect_error<InvalidGeometry>([&] { tool_path(collinear, {.spacing = 0.2}); }, "the face around 1, 0, 0 has no area");
+  // Curves that join two components.
+  const auto boxes = surface_of(two_boxes());
+  ToolPathRegion both;
+  both.enclosures.push_back({{{1, 1, 1}, {6.5, 1.5, 1}, {1, 2, 1}}});
+  for (const ToolPathOptions& options :
+       {ToolPathOptions{.spacing = 0.2, .seed = CurveSeed{{{1, 1, 1}, {6.5, 1.5, 1}}, false}},
+        ToolPathOptions{.spacing = 0.2, .region = both}})
+    expect_error<InvalidArgument>([&] { tool_path(boxes, options); }, "does not connect the points of the");
   const double tube = 1.4;  // around the tube of a torus, which does not divide it
   const auto ring = surface_of(torus(500));
   expect_error<InvalidArgument>(

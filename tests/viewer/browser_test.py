@@ -148,7 +148,9 @@ class Page(unittest.TestCase):
             if file.exists():
                 break
             time.sleep(0.1)
-        return file.read_bytes()
+        content = file.read_bytes()
+        file.unlink()  # the browser would number a second file of this name
+        return content
 
     def library_rows(self, source, name="library.csv", path=None, *more):
         file = self.work / name
@@ -267,10 +269,23 @@ class Page(unittest.TestCase):
         self.wait("document.getElementById('command').textContent.includes('--whole')")
         self.settled()
         self.expect_export("whole.csv")
+        Select(self.driver.find_element(By.ID, "whole_pattern")).select_by_visible_text("spiral")
+        self.wait("document.getElementById('command').textContent.includes('--pattern spiral')")
+        self.settled()
+        self.shot("spiral")
+        self.expect_export("whole.csv")
+        self.js("document.getElementById('whole_pattern').value = 'raster'")
         self.js("ahm.seed = [{ row: arguments[0] }, { row: arguments[1] }]; ahm.ask_whole()", rows[0][0], rows[-1][0])
         self.wait("document.getElementById('command').textContent.includes('--seed-curve')")
         self.settled()
         self.shot("whole")
+        self.js("ahm.set_tool('isolines')")
+        self.wait("document.getElementById('command').textContent.startsWith('ahm isolines')")
+        Select(self.driver.find_element(By.ID, "isolines_column")).select_by_visible_text("z")
+        self.wait("document.getElementById('command').textContent.includes('--column z')")
+        self.settled()
+        self.shot("isolines")
+        self.expect_export("isolines.obj")
         self.js("ahm.set_tool('stroke')")
         (_, x, y), (_, to_x, to_y) = rows[0], rows[-1]
         chain = self.at(x, y).click_and_hold()
@@ -419,7 +434,7 @@ class Page(unittest.TestCase):
         self.shot("touch")
 
     def all_is_seen(self):
-        return self.js("const p = document.getElementById('panel'); return p.scrollHeight <= p.clientHeight")
+        return self.js("const p = document.getElementById('panel'); return p.scrollHeight <= p.clientHeight && p.scrollWidth <= p.clientWidth")
 
     def expect_all_seen_with_larger_letters_and_a_longer_command(self, tool):
         self.js("""document.body.style.fontSize = '14px';
@@ -445,7 +460,7 @@ class Page(unittest.TestCase):
         self.shot("dark")
         self.assertTrue(self.all_is_seen())
         self.js("document.getElementById('method_section').open = true")
-        for tool in ("path", "stroke", "decal", "coverage", "map"):
+        for tool in ("path", "stroke", "decal", "coverage", "whole", "isolines", "map"):
             self.js("ahm.set_tool(arguments[0])", tool)
             self.settled()
             self.assertTrue(self.all_is_seen(), tool)

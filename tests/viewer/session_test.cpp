@@ -291,10 +291,11 @@ TEST_F(ViewerSession, CoversTheWholeSurface) {
   const Session on_sphere(surface, sphere.geometry, sphere_options());
   const double scale = scale_of(on_sphere);
   const json curve = {at_row(0), at_row(30)};
-  for (const bool drawn : {false, true}) {
+  for (const auto& [drawn, spiral] : {std::pair(false, false), {true, false}, {false, true}}) {
     json request{{"spacing", 0.25}};
     if (drawn) request["curve"] = curve;
-    ToolPathOptions options{.spacing = 0.25};
+    if (spiral) request["pattern"] = "spiral";
+    ToolPathOptions options{.spacing = 0.25, .spiral = spiral};
     if (drawn) options.seed = CurveSeed{{surface.position(Row{0}), surface.position(Row{30})}};
     const ToolPath expected = ahm::tool_path(surface, options);
     const json path = json_answer(on_sphere, "whole", request);
@@ -305,15 +306,44 @@ TEST_F(ViewerSession, CoversTheWholeSurface) {
     EXPECT_GT(path.at("covered").get<double>(), 0.99);
     EXPECT_FALSE(path.at("links").at("points").empty());
     EXPECT_EQ(path.at("command"), std::string("ahm coverage sphere.ply --whole --spacing 0.25 ") +
-                                      (drawn ? "--seed-curve '0 30' " : "") + "-o whole.csv");
+                                      (spiral ? "--pattern spiral " : "") + (drawn ? "--seed-curve '0 30' " : "") +
+                                      "-o whole.csv");
   }
   EXPECT_EQ(answer(on_sphere, "whole", {{"spacing", 1e-6}}).status, 400);
   EXPECT_EQ(answer(on_sphere, "whole", {{"spacing", 1e3}}).status, 400);
+  EXPECT_EQ(answer(on_sphere, "whole", {{"spacing", 0.25}, {"pattern", "zigzag"}}).status, 400);
+}
+
+TEST_F(ViewerSession, DrawsIsolinesOfColumns) {
+  io::Geometry geometry = sphere.geometry;
+  std::vector<double> heights;
+  for (const Vec3& p : geometry.points) heights.push_back(100 * p[2]);
+  geometry.properties = {{"height in cm", heights}, {"constant", std::vector<double>(heights.size(), 1)}};
+  const Session session(surface, geometry, sphere_options());
+  const json columns = json::parse(session.answer("info", "").body).at("columns");
+  ASSERT_EQ(columns.size(), 4U);  // x, y, z, height in cm
+  EXPECT_EQ(columns[3].at("name"), "height in cm");
+  EXPECT_EQ(columns[3].at("low"), *std::ranges::min_element(heights));
+  const json lines = json_answer(session, "isolines", {{"column", "height in cm"}, {"every", 30}});
+  double length = 0;
+  for (const Isoline& line : isolines(surface, heights, level_multiples(heights, 30))) length += line.length;
+  EXPECT_NEAR(lines.at("length").get<double>() * scale_of(session), length, 1e-9);
+  EXPECT_EQ(lines.at("lines"), 7);  // -90 ... 90
+  EXPECT_EQ(lines.at("pieces").size(), 7U);
+  const json &points = lines.at("points"), &pieces = lines.at("pieces");
+  EXPECT_EQ(points[0], points[pieces[1].get<std::size_t>() - 1]);  // closed
+  EXPECT_EQ(lines.at("command"), "ahm isolines sphere.ply --column 'height in cm' --every 30 -o isolines.obj");
+  for (const json& bad : {json{{"column", "none"}, {"every", 1}},
+                          {{"column", "z"}, {"every", 0}},
+                          {{"column", "z"}, {"every", 1e-4}},
+                          {{"column", "constant"}, {"every", 3}}})
+    EXPECT_EQ(answer(session, "isolines", bad).status, 400) << bad;
 }
 
 TEST_F(ViewerSession, ExportsTheFilesOfItsWriters) {
   SessionOptions options = sphere_options();
-  for (const char* what : {"map", "stroke", "path", "coverage", "whole", "decal"}) options.formats[what] = {"csv"};
+  for (const char* what : {"map", "stroke", "path", "coverage", "whole", "isolines", "decal"})
+    options.formats[what] = {"csv"};
   std::filesystem::path folder;
   std::vector<Vec3> path;
   CoveragePath covered;
@@ -330,6 +360,9 @@ TEST_F(ViewerSession, ExportsTheFilesOfItsWriters) {
     std::ofstream(file) << (covered = points).points.size();
   };
   options.write_whole = [&](const File& file, const ToolPath& points) { std::ofstream(file) << points.poses.size(); };
+  options.write_isolines = [&](const File& file, const std::vector<Isoline>& lines) {
+    std::ofstream(file) << lines.size();
+  };
   options.write_decal = [&](const File& file, const InverseMap&, const DecalOptions& decal, const Image& image) {
     decal_options = decal;
     std::ofstream(file) << image.width << ' ' << image.height;
@@ -361,6 +394,8 @@ TEST_F(ViewerSession, ExportsTheFilesOfItsWriters) {
 
   EXPECT_EQ(exported("whole", {{"spacing", 0.3}}).body,
             std::to_string(ahm::tool_path(surface, {.spacing = 0.3}).poses.size()));
+
+  EXPECT_EQ(exported("isolines", {{"column", "z"}, {"every", 0.3}}).body, "7");
 
   const auto decal = [&](const char* image) {
     return exported("decal", from_row(0, {{"size", 0.4}, {"angle", 90}, {"image", image}}));

@@ -81,6 +81,11 @@ Vec3 parse_direction(std::string_view text) {
   return v;
 }
 
+Direction parse_vector_or_angle(std::string_view text) {
+  if (text.find(',') == std::string_view::npos) return parse_degrees(text);
+  return parse_direction(text);
+}
+
 namespace {
 
 SourceFace parse_face(std::string_view text) {

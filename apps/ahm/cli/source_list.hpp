@@ -46,6 +46,13 @@ Vec3 parse_triple(std::string_view text);
 /// @throws std::invalid_argument
 Vec3 parse_direction(std::string_view text);
 
+/// A vector in space, or an angle from the u axis, radians.
+using Direction = std::variant<Vec3, double>;
+
+/// Parses a vector X,Y,Z that is not zero, or an angle in degrees.
+/// @throws std::invalid_argument
+Direction parse_vector_or_angle(std::string_view text);
+
 /// `123`: a vertex of the input.
 struct SourceVertex {
   Index index;

@@ -1,7 +1,6 @@
 #include "ahm/applications/isolines.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -50,26 +49,9 @@ struct IsolinesOptions {
   double every = 0;
 };
 
-/// The values of a column of the input, with an entry for every row.
-std::vector<double> column_of(const io::Geometry& geometry, const std::string& name) {
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    if (name == std::string(1, "xyz"[axis])) {
-      std::vector<double> values;
-      for (const Vec3& p : geometry.points) values.push_back(p[axis]);
-      return values;
-    }
-  std::vector<std::string> names{"x", "y", "z"};
-  for (const io::Property& property : geometry.properties) {
-    if (property.name == name) return property.values;
-    names.push_back(property.name);
-  }
-  throw InvalidArgument(
-      fmt::format("--column {}: the input has no such column; it has {}", name, fmt::join(names, ", ")));
-}
-
 /// The function, and the distances for the picture.
 std::vector<double> values_of(const IsolinesOptions& options, const Input& input, Journal& journal) {
-  if (!options.of_distance) return column_of(input.geometry, options.column);
+  if (!options.of_distance) return column_of(input.geometry, options.column, "--column");
   const SurfaceSource source = resolve(options.source, input, options.input.threads);
   comment_on_positions(input, std::span(&options.source.spec, 1), "--source", journal);
   journal.start("distance");
@@ -108,17 +90,10 @@ void run(const IsolinesOptions& options) {
         fmt::format("{}: no triangle contains a level; the values lie between {:.6g} and {:.6g}",
                     options.levels.empty() ? fmt::format("--every {:.6g}", options.every) : "--levels", low, high));
 
-  Polylines lines;
-  lines.numbered = true;
+  const Polylines lines = polylines_of(found);
   double length = 0;
-  std::size_t closed = 0;
-  for (const Isoline& line : found) {
-    std::vector<Vec3> points = line.points;
-    if (line.closed) points.push_back(points.front()), ++closed;
-    lines.add(points);
-    lines.levels.push_back(line.level);
-    length += line.length;
-  }
+  for (const Isoline& line : found) length += line.length;
+  const auto closed = static_cast<std::size_t>(std::ranges::count(found, true, &Isoline::closed));
   write_view(options, input, lines, journal);
   journal.start("write");
   write_polylines(options.output.output, options.output.format, lines);

@@ -125,4 +125,9 @@ SurfacePoint point_on_surface(const Input& input, const SourceSpec& spec, const 
   return point_of(input, spec);
 }
 
+Vec3 vector_of(const Direction& direction, const Input& input, const SurfacePoint& point) {
+  if (const auto* angle = std::get_if<double>(&direction)) return input.surface().direction(point, *angle);
+  return std::get<Vec3>(direction);
+}
+
 }  // namespace ahm::app

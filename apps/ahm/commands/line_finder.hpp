@@ -12,6 +12,7 @@
 #include "ahm/progress.hpp"
 #include "ahm/surface/exact/exact_geodesics.hpp"
 #include "ahm/surface/surface.hpp"
+#include "cli/source_list.hpp"
 #include "input/open.hpp"
 #include "output/lines.hpp"
 
@@ -64,5 +65,8 @@ void run_polyline(const std::string& name, const InputOptions& options, const Ou
 /// @param option  name of the option, for messages
 /// @throws InvalidArgument
 SurfacePoint point_on_surface(const Input& input, const SourceSpec& spec, const std::string& option);
+
+/// A direction at a point as a vector in space. @throws InvalidArgument (an angle at a point without a u axis)
+Vec3 vector_of(const Direction& direction, const Input& input, const SurfacePoint& point);
 
 }  // namespace ahm::app

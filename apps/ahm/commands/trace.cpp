@@ -1,8 +1,6 @@
 #include <fmt/format.h>
 
-#include <cmath>
 #include <sstream>
-#include <variant>
 
 #include "ahm/error.hpp"
 #include "ahm/util/vec.hpp"
@@ -30,9 +28,6 @@ constexpr const char* trace_footer =
     "Example:\n"
     "  ahm trace mesh.ply --source 17 --direction 1,0,0 --length 0.5 -o line.csv --view line.png";
 
-/// A vector in space, or an angle from the u axis, radians.
-using Direction = std::variant<Vec3, double>;
-
 /// A line to trace.
 struct LineRequest {
   std::optional<SourceSpec> source;
@@ -46,11 +41,6 @@ struct TraceCommandOptions {
   LineRequest line;
   std::vector<LineRequest> lines;  ///< lines of --lines, instead of `line`
 };
-
-Direction parse_vector_or_angle(std::string_view text) {
-  if (text.find(',') == std::string_view::npos) return parse_degrees(text);
-  return parse_direction(text);
-}
 
 LineRequest parse_line(const std::string& text) {
   std::istringstream stream(text);
@@ -70,14 +60,7 @@ std::vector<LineRequest> read_lines(const std::string& file) {
 
 FoundLine trace(const Input& input, const LineFinder& finder, const SurfacePoint& from, const LineRequest& line,
                 const char* option) {
-  if (const auto* angle = std::get_if<double>(&line.direction)) {
-    const auto frame = input.surface().source(from).frame;
-    if (!frame)
-      throw InvalidArgument(
-          fmt::format("{}: the source {} has no u axis; use a vector X,Y,Z", option, to_string(*line.source)));
-    return finder.trace(from, std::cos(*angle) * frame->x + std::sin(*angle) * frame->y, line.length);
-  }
-  const Vec3& direction = std::get<Vec3>(line.direction);
+  const Vec3 direction = vector_of(line.direction, input, from);
   try {
     return finder.trace(from, direction, line.length);
   } catch (const InvalidArgument& e) {

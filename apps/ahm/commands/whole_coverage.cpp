@@ -1,13 +1,16 @@
 #include "commands/whole_coverage.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "ahm/error.hpp"
+#include "ahm/io/write.hpp"
 #include "cli/option_adders.hpp"
 #include "cli/source_list.hpp"
 #include "commands/line_finder.hpp"
@@ -44,15 +47,78 @@ const char* word(PassOrigin origin) {
   return "";
 }
 
+const std::vector<std::string> coverages{"covered", "gap", "no_pass", "outside_region", "no_triangle", "removed"};
+
+std::array<std::size_t, 6> count_rows(const std::vector<RowCoverage>& rows) {
+  std::array<std::size_t, 6> counts{};
+  for (const RowCoverage row : rows) ++counts[static_cast<std::size_t>(row)];
+  return counts;
+}
+
+/// Writes the rows of the input with their coverage.
+void write_rows(const std::string& file, const io::Geometry& geometry, const std::vector<RowCoverage>& rows) {
+  std::vector<std::uint8_t> codes;
+  for (const RowCoverage row : rows) codes.push_back(static_cast<std::uint8_t>(row));
+  io::Table table{.title = "coverage by libahm"};
+  table.add({"x", "y", "z"}, geometry.points);
+  table.columns.push_back({{"status"}, io::CodedWords{codes, coverages}});
+  table.faces = geometry.faces();
+  io::write(file, table);
+}
+
+/// The rows that are not covered, by reason: "rows not covered: 12 in gaps, 3 in no triangle". Empty if there are none.
+std::string uncovered_rows(const std::vector<RowCoverage>& rows) {
+  const std::array<std::size_t, 6> counts = count_rows(rows);
+  std::vector<std::string> parts;
+  for (const auto& [reason, words] : {std::pair{RowCoverage::gap, "in gaps"},
+                                      {RowCoverage::no_pass, "in components without a pass"},
+                                      {RowCoverage::no_triangle, "in no triangle"},
+                                      {RowCoverage::removed, "removed before the map or without a face"}})
+    if (const std::size_t n = counts[static_cast<std::size_t>(reason)]; n > 0)
+      parts.push_back(fmt::format("{} {}", n, words));
+  return parts.empty() ? "" : fmt::format("rows not covered: {}\n", fmt::join(parts, ", "));
+}
+
+constexpr double long_side = 10;  ///< times the median side
+
+/// Share of the area of a cloud in triangles with long sides: between outliers, across holes, where points are sparse.
+double long_triangles(const Surface& surface) {
+  const exact::PolyhedralSurface flat = surface.flat_approximation().surface;
+  std::vector<double> sides;
+  for (Index half = 0; half < 3 * flat.face_count(); ++half) sides.push_back(flat.record(half).length);
+  std::vector<double> sorted = sides;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  double all = 0, in_long = 0;
+  for (std::size_t k = 0; k < sides.size(); k += 3) {
+    const double a = sides[k], b = sides[k + 1], c = sides[k + 2], half_sum = (a + b + c) / 2;
+    const double area = std::sqrt(std::max(0.0, half_sum * (half_sum - a) * (half_sum - b) * (half_sum - c)));
+    all += area;
+    if (std::max({a, b, c}) > long_side * *middle) in_long += area;
+  }
+  return in_long / all;
+}
+
+/// Warns if much of the area of a cloud may be no surface.
+void comment_on_long_triangles(const Input& input, Journal& journal) {
+  if (input.surface().faces().size() > 0) return;
+  if (const double share = long_triangles(input.surface()); share > 0.02)
+    journal.add_warning(fmt::format(
+        "{:.1f} % of the area is in triangles with sides longer than {:g} times the median: between outliers, across "
+        "holes, or where points are sparse; the path covers them, too. Remove outliers (--outliers), or cover a region",
+        100 * share, long_side));
+}
+
+/// The largest gap, which is measured up to 4 spacings.
+std::string gap_text(const ToolPathMeasures& measures) {
+  return fmt::format("{:.2f} spacings{}", measures.largest_gap, measures.largest_gap >= 4 ? " or more" : "");
+}
+
 /// The region of --mask: rows whose value is not zero.
 std::vector<bool> mask_of(const io::Geometry& geometry, const std::string& name) {
-  for (const io::Property& property : geometry.properties) {
-    if (property.name != name) continue;
-    std::vector<bool> rows;
-    for (const double value : property.values) rows.push_back(value != 0 && !std::isnan(value));
-    return rows;
-  }
-  throw InvalidArgument(fmt::format("--mask {}: the input has no such column", name));
+  std::vector<bool> rows;
+  for (const double value : column_of(geometry, name, "--mask")) rows.push_back(value != 0 && !std::isnan(value));
+  return rows;
 }
 
 std::vector<Vec3> curve_of(const Input& input, const std::vector<SourceSpec>& specs, const std::string& option) {
@@ -61,24 +127,19 @@ std::vector<Vec3> curve_of(const Input& input, const std::vector<SourceSpec>& sp
   return points;
 }
 
-/// A point of the surface at most half a spacing from a position. @param fault  of the error, a literal
-SurfacePoint point_near(const Input& input, const SourceSpec& spec, const std::string& option, double spacing,
-                        std::string_view fault) {
-  if (const auto* position = std::get_if<SourcePosition>(&spec))
-    if (const double away = input.surface().closest_point(position->position).distance; away > spacing / 2)
-      throw InvalidArgument(fault,
-                            fmt::format("{} {}: the point is {:.4g} from the surface, more than half of the spacing",
-                                        option, to_string(spec), away),
-                            "use a point on the surface");
-  return point_on_surface(input, spec, option);
+/// The point of a SPEC. The library checks the distance of positions from the surface.
+CurvePoint curve_point(const Input& input, const SourceSpec& spec, const std::string& option) {
+  const SurfacePoint point = point_on_surface(input, spec, option);
+  if (const auto* given = std::get_if<SourcePosition>(&spec)) return given->position;
+  return point;
 }
 
 ToolPathSeed seed_of(const WholeOptions& options, const Input& input) {
   if (options.from_boundary) return BoundarySeed{};
   if (const auto& p = options.plane; !p.empty()) return PlaneSeed{{p[0], p[1], p[2]}, {p[3], p[4], p[5]}};
   if (options.line)
-    return LineSeed{point_near(input, *options.line, "--seed-line", options.path.spacing, "seed_off_surface"),
-                    *options.direction};
+    return LineSeed{curve_point(input, *options.line, "--seed-line"),
+                    vector_of(*options.direction, input, point_on_surface(input, *options.line, "--seed-line"))};
   if (options.curve.empty()) return AutomaticSeed{};
   return CurveSeed{curve_of(input, options.curve, "--seed-curve"), options.closed};
 }
@@ -117,6 +178,8 @@ void report(const std::string& input_path, const OutputOptions& output, const In
   j["covered"] = measures.covered;
   j["largest_gap"] = measures.largest_gap;
   j["double_covered"] = measures.double_covered;
+  const std::array<std::size_t, 6> counts = count_rows(measures.rows);
+  for (std::size_t k = 0; k < counts.size(); ++k) j["rows"][coverages[k]] = counts[k];
   for (std::size_t k = 0; k < path.passes.size() && !output.json.empty(); ++k) {
     const ToolPass& pass = path.passes[k];
     j["passes"].push_back({{"pass", k},
@@ -127,19 +190,19 @@ void report(const std::string& input_path, const OutputOptions& output, const In
                            {"first", pass.begin},
                            {"points", pass.end - pass.begin}});
   }
-  deliver(
-      std::move(j),
-      fmt::format("{}{} of length {:.4g}, {} poses; links: {} on the surface, {} lifted{}, length {:.4g}\n"
-                  "covered: {:.2f} % of the area within 0.6 spacings; largest gap {:.2f} spacings; double: {:.2f} % of "
-                  "the passes\n",
-                  path.passes.size() == 1 ? "1 pass" : fmt::format("{} passes", path.passes.size()),
-                  spirals == 0   ? ""
-                  : spirals == 1 ? " (1 spiral)"
-                                 : fmt::format(" ({} spirals)", spirals),
-                  path.pass_length, path.poses.size(), path.surface_links, path.lifted_links,
-                  path.missing_links == 0 ? "" : fmt::format(", {} missing", path.missing_links), path.link_length,
-                  100 * measures.covered, measures.largest_gap, 100 * measures.double_covered),
-      output, journal);
+  deliver(std::move(j),
+          fmt::format("{}{} of length {:.4g}, {} poses; links: {} on the surface, {} lifted{}, length {:.4g}\n"
+                      "covered: {:.2f} % of the area within 0.6 spacings; largest gap {}; double: {:.2f} % of "
+                      "the passes\n",
+                      path.passes.size() == 1 ? "1 pass" : fmt::format("{} passes", path.passes.size()),
+                      spirals == 0   ? ""
+                      : spirals == 1 ? " (1 spiral)"
+                                     : fmt::format(" ({} spirals)", spirals),
+                      path.pass_length, path.poses.size(), path.surface_links, path.lifted_links,
+                      path.missing_links == 0 ? "" : fmt::format(", {} missing", path.missing_links), path.link_length,
+                      100 * measures.covered, gap_text(measures), 100 * measures.double_covered) +
+              uncovered_rows(measures.rows),
+          output, journal);
 }
 
 }  // namespace
@@ -162,8 +225,8 @@ void offer_whole(CLI::App& app, WholeOptions& o) {
       "--seed-line", o.line, [](const std::string& text) { return parse_source(text); }, "SPEC",
       "Passes parallel to the straight line through a point");
   auto* direction = add(
-      "--direction", o.direction, [](const std::string& text) { return parse_direction(text); }, "X,Y,Z",
-      "Direction of --seed-line");
+      "--direction", o.direction, [](const std::string& text) { return parse_vector_or_angle(text); }, "DIRECTION",
+      "Direction of --seed-line: a vector X,Y,Z, or an angle in degrees from the u axis, as in 'ahm trace'");
   line->needs(direction);
   direction->needs(line);
   std::vector<CLI::Option*> seeds{boundary, plane, curve, line};
@@ -173,8 +236,18 @@ void offer_whole(CLI::App& app, WholeOptions& o) {
   add("--mask", o.mask, non_empty, "NAME", "Cover only triangles whose corners have a nonzero value in column NAME");
   auto* facing = add(
       "--facing", o.facing, [](const std::string& text) { return parse_direction(text); }, "X,Y,Z",
-      "Cover only triangles whose normal is near a direction");
-  add("--max-angle", o.max_angle, parse_degrees, "DEG", "Largest angle between normal and --facing (default 45)")
+      "Cover only what faces a direction: 0,0,1 is the upper side of the part. What lies below other parts is\n"
+      "covered, too");
+  const auto half_turn = [](const std::string& text) {
+    const double angle = parse_degrees(text);
+    if (!(angle >= 0 && angle <= std::numbers::pi))
+      throw std::invalid_argument(fmt::format("'{}' is not between 0 and 180 degrees", text));
+    return angle;
+  };
+  add("--max-angle", o.max_angle, half_turn, "DEG",
+      "Largest angle between the normal of the surface and --facing, 0 to 180 (default 45). 0,0,1 with 90 covers all "
+      "that "
+      "is\nnot turned down")
       ->needs(facing);
   add("--inside", o.inside, parse_sources, "POINTS",
       "Cover only what the closed curve through points encloses: all parts but the largest into which it divides the\n"
@@ -203,12 +276,15 @@ void offer_whole(CLI::App& app, WholeOptions& o) {
   add("--tilt", o.path.tilt, lean, "DEG", "The tool leans to the left of the travel by DEG degrees; < 0: to the right");
   add("--offset", o.path.offset, parse_positive, "D",
       "Distance of the poses from the surface, as the center of a ball of radius D on it");
+  add("--rows", o.rows, non_empty, "FILE",
+      "Write for every row of INPUT whether it is covered, and why not, see below: .csv, .ply, ...");
   offer_path_files(app, o.files, whole);
 }
 
 void run_whole(const InputOptions& input_options, const OutputOptions& output, const WholeOptions& options,
                const std::optional<SourceSpec>& source, double radius) {
-  check_results(input_options.path, output, path_endings());
+  check_results(input_options.path, output, path_endings(), {{"--rows", options.rows}});
+  if (!options.rows.empty()) io::check_writable(options.rows);
   check_path_file(output, options.files);
   if (input_options.around_source)
     throw InvalidArgument("--local: cannot be combined with --whole, which needs the whole input");
@@ -220,11 +296,12 @@ void run_whole(const InputOptions& input_options, const OutputOptions& output, c
   InputOptions opened = with_named_points(input_options, named);
   opened.all_components = true;
   const Input input = open_input(opened, journal);
+  comment_on_long_triangles(input, journal);
   ToolPathOptions o = options.path;
   o.seed = seed_of(options, input);
   o.progress = journal.progress();
   o.threads = input_options.threads;
-  if (source) o.region.disc = {point_near(input, *source, "--source", o.spacing, "region_off_surface"), radius};
+  if (source) o.region.disc = {curve_point(input, *source, "--source"), radius};
   if (!options.mask.empty()) o.region.rows = mask_of(input.geometry, options.mask);
   if (options.facing) o.region.facing = {*options.facing, options.max_angle};
   if (!options.inside.empty()) o.region.enclosures.push_back({curve_of(input, options.inside, "--inside")});
@@ -245,11 +322,11 @@ void run_whole(const InputOptions& input_options, const OutputOptions& output, c
     journal.add_warning("no spiral: nowhere are three or more closed passes around each other; try another seed");
   if (measures.covered < 0.99 || measures.largest_gap > 1.25)
     journal.add_warning(
-        fmt::format("gaps: {:.2f} % of the area is farther than 0.6 spacings from a pass, the farthest point {:.2f} "
-                    "spacings",
-                    100 * (1 - measures.covered), measures.largest_gap));
+        fmt::format("gaps: {:.2f} % of the area is farther than 0.6 spacings from a pass, the farthest point {}",
+                    100 * (1 - measures.covered), gap_text(measures)));
   write_view(input_options, output, input, path, journal);
   journal.start("write");
+  if (!options.rows.empty()) write_rows(options.rows, input.geometry, measures.rows);
   write_tool_path(output.output, output.format, options.files, o, path);
   report(input_options.path, output, input, path, measures, journal);
 }

@@ -9,6 +9,7 @@
 
 #include "ahm/applications/tool_path.hpp"
 #include "cli/options.hpp"
+#include "cli/source_list.hpp"
 #include "commands/tool_path_files.hpp"
 
 namespace ahm::app {
@@ -22,13 +23,14 @@ struct WholeOptions {
   std::vector<SourceSpec> inside, outside;  ///< closed curves that limit the region
   bool closed = false;
   std::optional<SourceSpec> line;
-  std::optional<Vec3> direction;
+  std::optional<Direction> direction;
   bool zigzag = false;  ///< the default, for completeness
   std::string mask;
   std::optional<Vec3> facing;
   double max_angle = 0.785398163397448;  ///< radians
   ToolPathOptions path = {};
   PathFileOptions files = {};
+  std::string rows;  ///< a file
 };
 
 /// Adds --whole and the options that need it.

@@ -1,6 +1,7 @@
 #include "input/open.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -171,6 +172,12 @@ Input open_input(io::Geometry geometry, const InputOptions& options, Journal& jo
 
 Input open_input(const InputOptions& options, Journal& journal, const std::optional<SourceSpec>& source) {
   return open_input(read_input(options, journal), options, journal, source);
+}
+
+std::vector<double> column_of(const io::Geometry& geometry, const std::string& name, const std::string& option) {
+  if (auto values = io::column(geometry, name)) return *std::move(values);
+  throw InvalidArgument(fmt::format("{} {}: the input has no such column; it has {}", option, name,
+                                    fmt::join(io::column_names(geometry), ", ")));
 }
 
 InputOptions with_named_points(InputOptions options, const std::vector<SourceSpec>& points) {

@@ -70,6 +70,11 @@ Input open_input(io::Geometry geometry, const InputOptions& options, Journal& jo
 /// @throws InvalidGeometry (no points); what the reader and the backend throw
 Input open_input(const InputOptions& options, Journal& journal, const std::optional<SourceSpec>& source = {});
 
+/// The values of a column of the input, or of x, y or z, one per row.
+/// @param option  name of the option, for messages
+/// @throws InvalidArgument (no such column)
+std::vector<double> column_of(const io::Geometry& geometry, const std::string& name, const std::string& option);
+
 /// The options, with these points added to those named in the command.
 InputOptions with_named_points(InputOptions options, const std::vector<SourceSpec>& points);
 

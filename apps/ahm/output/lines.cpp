@@ -6,6 +6,18 @@
 
 namespace ahm::app {
 
+Polylines polylines_of(const std::vector<Isoline>& lines) {
+  Polylines result;
+  result.numbered = true;
+  for (const Isoline& line : lines) {
+    std::vector<Vec3> points = line.points;
+    if (line.closed) points.push_back(points.front());
+    result.add(points);
+    result.levels.push_back(line.level);
+  }
+  return result;
+}
+
 void write_polylines(const std::string& file, const std::string& format, const Polylines& curves) {
   if (format.empty() && io::lower_extension(file) == ".obj")
     return io::write_obj_lines(file, curves.points, curves.begin);

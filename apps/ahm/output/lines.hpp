@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ahm/applications/coverage.hpp"
+#include "ahm/applications/isolines.hpp"
 #include "ahm/surface/surface.hpp"
 #include "ahm/types.hpp"
 
@@ -32,6 +33,9 @@ struct Polylines {  // NOLINT(bugprone-exception-escape): assertions in the dest
   /// Index after the last point of curve k.
   Index end(std::size_t k) const { return k + 1 < begin.size() ? begin[k + 1] : static_cast<Index>(points.size()); }
 };
+
+/// Isolines with their levels. Closed ones end at their first point.
+Polylines polylines_of(const std::vector<Isoline>& lines);
 
 /// Writes an .obj with lines, or a table with edges.
 /// @param format  extension; empty: that of the file name. @throws IoError

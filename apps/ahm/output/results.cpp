@@ -34,11 +34,14 @@ std::ptrdiff_t count_mapped(const std::vector<double>& quality) {
 
 }  // namespace
 
-void check_results(const std::string& input, const OutputOptions& output, const std::vector<std::string>& endings) {
+void check_results(const std::string& input, const OutputOptions& output, const std::vector<std::string>& endings,
+                   const std::vector<OutputPath>& more) {
   const OutputPath file{"--output", output.output};
   if (output.output == standard_output && output.json == "-")
     throw InvalidArgument("--output - and --json -: both are for standard output; write one of them to a file");
-  check_outputs({input}, {file, {"--json", output.json}, {"--view", output.view}}, output.keep_existing);
+  std::vector<OutputPath> files{file, {"--json", output.json}, {"--view", output.view}};
+  files.insert(files.end(), more.begin(), more.end());
+  check_outputs({input}, files, output.keep_existing);
   if (!endings.empty()) check_ending(file, endings, output.format);
   if (endings.empty() && !output.output.empty()) io::check_writable(output.output, output.format);
   check_view(output.view);

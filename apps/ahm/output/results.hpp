@@ -15,13 +15,16 @@
 #include "ahm/render/picture.hpp"
 #include "ahm/surface/surface_triangles.hpp"
 #include "input/open.hpp"
+#include "output/output_paths.hpp"
 
 namespace ahm::app {
 
 /// Checks before the work that --output, --view and --json can be written.
 /// @param endings  allowed extensions of --output; none: those of tables
+/// @param more     other output files
 /// @throws IoError, InvalidArgument
-void check_results(const std::string& input, const OutputOptions& output, const std::vector<std::string>& endings = {});
+void check_results(const std::string& input, const OutputOptions& output, const std::vector<std::string>& endings = {},
+                   const std::vector<OutputPath>& more = {});
 
 /// Warns if many rows have no coordinates.
 void comment_on_statuses(const std::vector<Status>& status, const std::string& input, Journal& journal);

@@ -53,7 +53,8 @@ viewer::SessionOptions View::session_options(const ViewOptions& options) const {
                      {"stroke", {"csv", "ply", "vtp", "jsonl", "pcd"}},
                      {"path", {"obj", "csv", "ply", "vtp", "jsonl"}},
                      {"coverage", {"csv", "ply", "vtp", "jsonl"}},
-                     {"whole", {"csv", "ply", "vtp", "jsonl", "obj", "json", "yaml"}}};
+                     {"whole", {"csv", "ply", "vtp", "jsonl", "obj", "json", "yaml"}},
+                     {"isolines", {"obj", "csv", "ply", "vtp", "jsonl"}}};
   if (io::has_images()) session.formats["decal"] = {"glb", "ply"};
   session.worded = [](const Error& error) { return worded(error); };
   session.write = [this](const std::filesystem::path& file, const RowLogMap& rows, const std::vector<double>& quality) {
@@ -71,6 +72,9 @@ viewer::SessionOptions View::session_options(const ViewOptions& options) const {
   };
   session.write_whole = [](const std::filesystem::path& file, const ToolPath& path) {
     write_tool_path(file.string(), "", {}, {.spacing = path.spacing}, path);
+  };
+  session.write_isolines = [](const std::filesystem::path& file, const std::vector<Isoline>& lines) {
+    write_polylines(file.string(), "", polylines_of(lines));
   };
   session.write_decal = [this](const std::filesystem::path& file, const InverseMap& inverse, const DecalOptions& decal,
                                const Image& image) {

@@ -89,11 +89,21 @@ json session_info(const Surface& surface, const io::Geometry& geometry, const Se
   const std::size_t faces = surface.faces().size(), rows = geometry.points.size();
   json variants = json::array();
   for (const Variant variant : all_variants) variants.push_back(to_string(variant));
+  // Columns that have isolines, with their range.
+  json columns = json::array();
+  for (const std::string& name : io::column_names(geometry)) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    const auto values = io::column(geometry, name);
+    for (const double x : *values)
+      if (std::isfinite(x)) low = std::min(low, x), high = std::max(high, x);
+    if (low < high) columns.push_back({{"name", name}, {"low", low}, {"high", high}});
+  }
   const Settings& usual = options.settings;
   json info = {{"about", faces > 0 ? counted(rows, "vertex") + ", " + counted(faces, "face") : counted(rows, "point")},
                {"has_faces", faces > 0},
                {"variants", variants},
                {"formats", options.formats},
+               {"columns", columns},
                {"method", to_string(usual.method)},
                {"variant", to_string(usual.variant)},
                {"t_coef", usual.t_coef}};

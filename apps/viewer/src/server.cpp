@@ -23,7 +23,7 @@ constexpr std::size_t most_workers = 1000;                                // one
 constexpr int backlog = 1024;  // number of connections that can wait for a worker
 
 constexpr const char* gets[] = {"surface", "info"};
-constexpr const char* posts[] = {"map", "stroke", "path", "coverage", "whole", "export"};
+constexpr const char* posts[] = {"map", "stroke", "path", "coverage", "whole", "isolines", "export"};
 
 /// The server of httplib, with a longer queue of waiting connections.
 class Listener : public httplib::Server {

@@ -17,6 +17,7 @@
 #include <thread>
 #endif
 
+#include "ahm/applications/isolines.hpp"
 #include "ahm/applications/stroke.hpp"
 #include "ahm/applications/tool_path_text.hpp"
 #include "ahm/error.hpp"
@@ -477,12 +478,17 @@ struct Session::Impl {
                              settings)}});
   }
 
+  static bool is_spiral(const Request& request) {
+    return request.has("pattern") && request.word("pattern", {"raster", "spiral"}) == "spiral";
+  }
+
   /// The tool path over the whole surface.
   ToolPath whole_path(const Request& request, const StopToken& stop) const {
     ToolPathOptions wanted{.spacing = request.positive("spacing"), .progress = until(stop), .threads = options.threads};
     constexpr double most_passes = 500;
     if (page.scale() / wanted.spacing > most_passes)
       throw InvalidArgument("request: more than 500 passes; choose a larger \"spacing\"");
+    wanted.spiral = is_spiral(request);
     if (request.has("curve")) {
       CurveSeed seed;
       for (const SurfacePoint& point : request.points("curve"))
@@ -507,6 +513,7 @@ struct Session::Impl {
       curves.push_back({{"points", points}, {"pieces", pieces}});
     }
     std::vector<std::string> words{"--whole", "--spacing", number(path.spacing)};
+    if (is_spiral(request)) words.insert(words.end(), {"--pattern", "spiral"});
     if (request.has("curve")) {
       std::string list;
       for (const SurfacePoint& point : request.points("curve"))
@@ -521,6 +528,37 @@ struct Session::Impl {
                       {"area", measures.area / (page.scale() * page.scale())},
                       {"covered", measures.covered},
                       {"command", command(options, "coverage", words, {})}});
+  }
+
+  std::vector<Isoline> lines_of(const Request& request) const {
+    constexpr std::size_t most_levels = 1000;
+    const auto values = io::column(geometry, request.word("column", io::column_names(geometry)));
+    const std::vector<double> levels = level_multiples(*values, request.positive("every"));
+    if (levels.size() > most_levels) throw InvalidArgument("request: more than 1000 levels; choose a larger \"every\"");
+    std::vector<Isoline> lines = isolines(surface, *values, levels);
+    if (lines.empty()) throw InvalidArgument("no triangle contains a level; choose a smaller step");
+    return lines;
+  }
+
+  Answer answer_isolines(const Request& request) {
+    channels.begin(request.client(), Channels::Kind::coverage, request.number());
+    const std::vector<Isoline> lines = lines_of(request);
+    json points = json::array(), pieces = json::array();
+    double length = 0;
+    for (const Isoline& line : lines) {
+      pieces.push_back(points.size());
+      for (const Vec3& x : line.points) points.push_back(page.to_page(x));
+      if (line.closed) points.push_back(page.to_page(line.points.front()));
+      length += line.length;
+    }
+    return answer_of({{"points", points},
+                      {"pieces", pieces},
+                      {"lines", lines.size()},
+                      {"length", length / page.scale()},
+                      {"command", command(options, "isolines",
+                                          {"--column", request.text("column"), "--every",
+                                           number(request.positive("every")), "-o", "isolines.obj"},
+                                          {})}});
   }
 
   void write_map(const Request& request, const std::filesystem::path& file, const StopToken& stop) {
@@ -566,6 +604,7 @@ struct Session::Impl {
       if (what == "path")
         return options.write_path(file, path({point_in(request, "from"), point_in(request, "to")}, stop).points);
       if (what == "whole") return options.write_whole(file, whole_path(request, stop));
+      if (what == "isolines") return options.write_isolines(file, lines_of(request));
       options.write_coverage(file, tool_path(point_in(request, "source"), request.coverage(),
                                              of_patch(request.settings(options.settings)), stop));
     };
@@ -581,6 +620,7 @@ struct Session::Impl {
     if (name == "path") return answer_path(request);
     if (name == "coverage") return answer_coverage(request);
     if (name == "whole") return answer_whole(request);
+    if (name == "isolines") return answer_isolines(request);
     if (name == "export") return answer_export(request);
     return refusal(404, "there is no request of this name");
   }

@@ -89,15 +89,17 @@ void split_fans(FaceMesh& mesh) {
   mesh.vertices = std::move(vertices);
 }
 
-/// The corners of all faces as fans of triangles of vertices.
+/// The corners of all faces as fans of triangles of vertices, without triangles whose corners coincide.
 FaceMesh fans(const Surface& surface) {
   const FaceList faces = surface.faces();
   const std::span<const Index> corners = surface.corner_vertices();
   std::vector<Triangle> triangles;
   for (std::size_t f = 0; f < faces.size(); ++f)
     for (auto c = static_cast<std::size_t>(faces.begin[f]) + 1; c + 1 < static_cast<std::size_t>(faces.begin[f + 1]);
-         ++c)
-      triangles.push_back({corners[static_cast<std::size_t>(faces.begin[f])], corners[c], corners[c + 1]});
+         ++c) {
+      const Triangle t{corners[static_cast<std::size_t>(faces.begin[f])], corners[c], corners[c + 1]};
+      if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) triangles.push_back(t);
+    }
   const auto n = static_cast<std::size_t>(surface.graph().size());
   std::vector<Vec3> points(n);
   for (std::size_t v = 0; v < n; ++v)

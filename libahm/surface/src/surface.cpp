@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <limits>
 #include <mutex>
 #include <string>
@@ -141,16 +142,30 @@ Vec3 Surface::position(const SurfacePoint& point) const {
 
 double Surface::normal_error_degrees() const { return normal_error; }
 
-SurfaceSource Surface::source(const SurfacePoint& point, const std::optional<Vec3>& u_axis) const {
-  if (!u_axis) return placed(point, u_axis);
-  const auto where =
+namespace {
+
+std::string where(const SurfacePoint& point) {
+  return std::visit(
       Overloaded{[](Row row) { return "at row " + std::to_string(row.index); },
                  [](const EdgePoint& edge) { return "on the edge from row " + std::to_string(edge.from.index); },
                  [](const FacePoint& inside) { return "in face " + std::to_string(inside.face); },
-                 [](const TangentPoint& near) { return "near row " + std::to_string(near.row.index); }};
+                 [](const TangentPoint& near) { return "near row " + std::to_string(near.row.index); }},
+      point);
+}
+
+}  // namespace
+
+SurfaceSource Surface::source(const SurfacePoint& point, const std::optional<Vec3>& u_axis) const {
+  if (!u_axis) return placed(point, u_axis);
   if (const std::optional<Frame> frame = placed(point, {}).frame)
-    check_off_normal(*u_axis, frame->normal, normal_error_degrees(), std::visit(where, point));
+    check_off_normal(*u_axis, frame->normal, normal_error_degrees(), where(point));
   return placed(point, u_axis);
+}
+
+Vec3 Surface::direction(const SurfacePoint& point, double angle) const {
+  const std::optional<Frame> frame = source(point).frame;
+  if (!frame) throw InvalidArgument("there is no u axis " + where(point) + "; use a vector instead of an angle");
+  return std::cos(angle) * frame->x + std::sin(angle) * frame->y;
 }
 
 SurfaceSource Surface::placed(const SurfacePoint& point, const std::optional<Vec3>& u_axis) const {

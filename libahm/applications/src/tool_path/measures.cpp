@@ -114,6 +114,33 @@ double double_share(const std::vector<PassPoint>& points) {
   return points.empty() ? 0 : static_cast<double>(count) / static_cast<double>(points.size());
 }
 
+/// The coverage of all rows. Of several vertices of a row, the one that is covered best counts.
+/// @param of_points  coverage of the points of the mesh of the region
+std::vector<RowCoverage> coverage_of_rows(const Surface& surface, const FaceMesh& region_mesh, bool is_part,
+                                          const std::vector<RowCoverage>& of_points) {
+  std::vector<RowCoverage> of_vertices(to_size(surface.graph().size()), RowCoverage::no_triangle);
+  const auto assign = [&](const FaceMesh& mesh, const auto& coverage) {
+    for (std::size_t p = 0; p < mesh.points.size(); ++p) {
+      if (mesh.vertices[p] < 0) continue;
+      RowCoverage& best = of_vertices[to_size(mesh.vertices[p])];
+      best = std::min(best, coverage(p));
+    }
+  };
+  if (is_part) assign(face_mesh(surface), [](std::size_t) { return RowCoverage::outside_region; });
+  assign(region_mesh, [&](std::size_t p) { return of_points[p]; });
+  std::vector<RowCoverage> result;
+  for (Index r = 0; r < surface.rows().row_count(); ++r) {
+    RowCoverage best = RowCoverage::removed;
+    for (const Vertex v : surface.rows().vertices(Row(r))) best = std::min(best, of_vertices[to_size(v.index)]);
+    result.push_back(best);
+  }
+  return result;
+}
+
+bool is_everything(const ToolPathRegion& region) {
+  return region.rows.empty() && !region.facing && !region.disc && region.enclosures.empty();
+}
+
 }  // namespace
 
 ToolPathMeasures tool_path_measures(const Surface& surface, const ToolPath& path, const ToolPathRegion& region,
@@ -138,10 +165,15 @@ ToolPathMeasures tool_path_measures(const Surface& surface, const ToolPath& path
       point.component = domain.surface.component(domain.mesh.faces[to_size(on_mesh->face)][0]);
     }
   result.area *= path.spacing * path.spacing;
+  std::vector<RowCoverage> of_points(domain.mesh.points.size(), RowCoverage::no_pass);
   if (sources.empty()) {
     result.largest_gap = farthest;
+    result.rows = coverage_of_rows(surface, domain.mesh, !is_everything(region), of_points);
     return result;
   }
+  std::vector<bool> has_pass(domain.mesh.points.size(), false);  // by number of the component
+  for (const PassPoint& point : points)
+    if (point.component >= 0) has_pass[to_size(point.component)] = true;
   const exact::ExactMap map = exact::exact_map(domain.surface, sources, options);
   std::size_t covered = 0;
   const auto add = [&](Status status, double distance) {
@@ -150,9 +182,14 @@ ToolPathMeasures tool_path_measures(const Surface& surface, const ToolPath& path
     return away <= covered_within;
   };
   for (std::size_t k = 0; k < map.targets(); ++k) covered += add(map.target_status(k), map.target_distance(k));
-  for (Index v = 0; v < map.size(); ++v) add(map.status(Vertex(v)), map.distance(Vertex(v)));
+  for (Index v = 0; v < map.size(); ++v) {
+    const bool is_covered = add(map.status(Vertex(v)), map.distance(Vertex(v)));
+    if (has_pass[to_size(domain.surface.component(v))])
+      of_points[to_size(v)] = is_covered ? RowCoverage::covered : RowCoverage::gap;
+  }
   result.covered = map.targets() > 0 ? static_cast<double>(covered) / static_cast<double>(map.targets()) : 0;
   result.double_covered = double_share(points);
+  result.rows = coverage_of_rows(surface, domain.mesh, !is_everything(region), of_points);
   return result;
 }
 

@@ -218,18 +218,26 @@ class Linker {
         clearance_(clearance),
         offset_(offset) {
     Vec3 low = domain.mesh.points.front(), high = low;
-    for (const Vec3& p : domain.mesh.points)
+    const auto enlarge = [&](const Vec3& p) {
       for (std::size_t axis = 0; axis < 3; ++axis)
         low[axis] = std::min(low[axis], p[axis]), high[axis] = std::max(high[axis], p[axis]);
+    };
+    for (const Vec3& p : domain.mesh.points) enlarge(p);
     extent_ = distance(low, high);
+    for (const Vec3& p : surface.positions())
+      if (is_finite(p)) enlarge((1 / spacing) * p);
+    center_ = 0.5 * (low + high);
+    outside_ = 1.05 * (distance(low, high) / 2 + clearance + offset);
   }
 
   Vec3 lifted(const Spot& spot) const { return spot.position + clearance_ * spot.axis; }
 
-  /// Whether the tool can rise from the surface to the clearance.
-  bool can_rise(const Spot& spot) const {
-    for (const double share : {0.25, 0.5, 0.75, 1.0})
+  /// Whether the tool can rise from the surface to a share of the clearance.
+  bool can_rise(const Spot& spot, double highest = 1) const {
+    for (const double part : {0.25, 0.5, 0.75, 1.0}) {
+      const double share = part * highest;
       if (distance_from_surface(spot.position + share * clearance_ * spot.axis) < least_height(share)) return false;
+    }
     return true;
   }
 
@@ -267,6 +275,24 @@ class Linker {
       if (is_free(over)) return over;
     }
     return {};
+  }
+
+  /// Positions as of `through_space`, away from the surface to a sphere around it, along the sphere, and back.
+  std::optional<std::vector<Vec3>> around(const Spot& from, const Spot& to) const {
+    std::optional<std::vector<Vec3>> result = way_out(from);
+    const std::optional<std::vector<Vec3>> in = result ? way_out(to) : std::nullopt;
+    if (!in) return {};
+    const Vec3 a = normalized(result->back() - center_), b = normalized(in->back() - center_);
+    Vec3 side = b - dot(a, b) * a;
+    if (!(norm(side) > 1e-6)) side = any_perpendicular(a);  // the same or opposite places
+    const double angle = std::atan2(norm(cross(a, b)), dot(a, b));
+    const auto parts = static_cast<int>(std::ceil(angle / 0.5));  // chords of 1.05 radii stay outside of the sphere
+    for (int k = 1; k < parts; ++k) {
+      const double turn = angle * k / parts;
+      result->push_back(center_ + outside_ * (std::cos(turn) * a + std::sin(turn) * normalized(side)));
+    }
+    result->insert(result->end(), in->rbegin(), in->rend());
+    return is_free(*result) ? result : std::nullopt;
   }
 
   /// Appends the pose at a point to a track, unless a ball of the offset does not fit there, or the pose is the last one.
@@ -308,6 +334,38 @@ class Linker {
     }
     return center;
   }
+  static Vec3 any_perpendicular(const Vec3& axis) {
+    return cross(axis, std::abs(axis[0]) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0});
+  }
+
+  /// Positions from the clearance over a spot, or half of it where there is no room, to the sphere around the surface: along the
+  /// axis, and straight on in the direction nearest to the axis that is free.
+  std::optional<std::vector<Vec3>> way_out(const Spot& spot) const {
+    std::vector<Vec3> directions{spot.axis};
+    for (const double x : {-1.0, 0.0, 1.0})
+      for (const double y : {-1.0, 0.0, 1.0})
+        for (const double z : {-1.0, 0.0, 1.0})
+          if (x != 0 || y != 0 || z != 0) directions.push_back(normalized(Vec3{x, y, z}));
+    std::stable_sort(directions.begin(), directions.end(),
+                     [&](const Vec3& a, const Vec3& b) { return dot(a, spot.axis) > dot(b, spot.axis); });
+    const double share = can_rise(spot) ? 1 : 0.5;
+    if (share < 1 && !can_rise(spot, share)) return {};
+    const Vec3 start = spot.position + share * clearance_ * spot.axis;
+    for (double height = share * clearance_; height < 2 * extent_; height *= 2) {
+      const Vec3 from = spot.position + height * spot.axis;
+      if (!is_free(start, from)) return {};
+      for (const Vec3& direction : directions) {
+        // |from + t direction - center| = radius of the sphere
+        const Vec3 offset = from - center_;
+        const double along = dot(offset, direction), square = dot(offset, offset) - outside_ * outside_;
+        const double t = std::sqrt(std::max(0.0, along * along - square)) - along;
+        const Vec3 end = from + t * direction;
+        if (t > 0 && is_free(from, end)) return std::vector<Vec3>{start, from, end};
+      }
+    }
+    return {};
+  }
+
   double distance_from_surface(const Vec3& position) const {
     return surface_.closest_point(spacing_ * position).distance / spacing_;
   }
@@ -333,6 +391,8 @@ class Linker {
   const PathDomain& domain_;
   const SmoothNormals& normals_;
   double spacing_, clearance_, offset_, extent_ = 0;
+  Vec3 center_{};       ///< of the bounding box of the surface
+  double outside_ = 0;  ///< radius of a sphere around the surface
 };
 
 /// Appends poses to a path. Positions are converted to world units.
@@ -436,6 +496,13 @@ void add_poses(const Surface& surface, const PathDomain& domain, std::vector<Pas
   const double clearance = or_else(options.clearance, 1), max_link = or_else(options.max_link, 3);
   const Linker linker(surface, domain, normals, spacing, clearance, options.offset / spacing);
 
+  constexpr double max_poses = 1 << 24;
+  double length = 0;
+  for (const PassCurve& pass : passes) length += curve_length(domain.mesh, pass.curve);
+  if (length / step > max_poses)
+    throw ResourceExhausted("the step, " + detail::number(options.step) +
+                            ", requires more than 2^24 poses; enlarge it, or cover a smaller region");
+
   std::vector<TrackedPass> tracks(passes.size());
   detail::parallel_chunks(static_cast<Offset>(passes.size()), 1, options.threads, [&](Offset k, Offset) {
     const PassCurve& pass = passes[static_cast<std::size_t>(k)];
@@ -480,6 +547,7 @@ void add_poses(const Surface& surface, const PathDomain& domain, std::vector<Pas
       std::optional<std::vector<Vec3>> over;
       if (!along) over = linker.through_space(end, start);
       if (!along && !over) along = linker.on_surface(end, start, unlimited);
+      if (!along && !over) over = linker.around(end, start);
       if (along) {
         ++path.surface_links;
         for (std::size_t i = 1; i < along->size(); ++i) writer.add((*along)[i], ToolMotion::link, number);

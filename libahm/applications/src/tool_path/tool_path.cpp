@@ -50,6 +50,22 @@ void check(const ToolPathOptions& o) {
       throw InvalidArgument(std::string(name) + " is " + detail::number(angle) + "; it must lie within (-pi/2, pi/2)");
 }
 
+/// Rejects faces that exact maps reject, before the refinement changes their numbers.
+void check_faces(const FaceMesh& mesh, double spacing) {
+  constexpr double min_height = 1e-13;  // as of `exact::PolyhedralSurface`
+  for (std::size_t f = 0; f < mesh.size(); ++f) {
+    const auto corner = [&](std::size_t c) { return mesh.points[to_size(mesh.faces[f][c])]; };
+    const Vec3 ab = corner(1) - corner(0), ac = corner(2) - corner(0), bc = corner(2) - corner(1);
+    const double longest = std::max({norm(ab), norm(ac), norm(bc)});
+    if (!std::isfinite(longest)) continue;  // the refinement rejects the spacing
+    if (longest > 0 && norm(cross((1 / longest) * ab, (1 / longest) * ac)) > min_height) continue;
+    const Vec3 at = spacing * mesh.position({static_cast<Index>(f), {1.0 / 3, 1.0 / 3, 1.0 / 3}});
+    throw InvalidGeometry("the face around " + detail::number(at[0]) + ", " + detail::number(at[1]) + ", " +
+                          detail::number(at[2]) +
+                          " has no area: its corners lie on a line; remove it or move its corners");
+  }
+}
+
 /// The longest diagonal of the bounding box.
 double extent(const FaceMesh& mesh) {
   Vec3 low = mesh.points.front(), high = low;
@@ -59,12 +75,33 @@ double extent(const FaceMesh& mesh) {
   return distance(low, high);
 }
 
+/// The nearest point of a surface.
+/// @param name   of the point, for messages
+/// @param fault  name of the error, a literal
+SurfacePoint point_near(const Surface& surface, const Vec3& position, double spacing, const std::string& name,
+                        std::string_view fault) {
+  const ClosestPoint closest = surface.closest_point(position);
+  if (closest.distance > largest_curve_distance * spacing)
+    throw InvalidArgument(
+        fault, name + " is " + detail::number(closest.distance) + " from the surface, more than half of the spacing",
+        "use a point on the surface");
+  return closest.point;
+}
+
+SurfacePoint on_surface(const Surface& surface, const CurvePoint& point, double spacing, const std::string& name,
+                        std::string_view fault) {
+  if (const auto* position = std::get_if<Vec3>(&point)) return point_near(surface, *position, spacing, name, fault);
+  return std::get<SurfacePoint>(point);
+}
+
 /// Keeps the faces within a distance along the surface of a point.
 void keep_disc(const Surface& surface, const ToolPathRegion::Disc& disc, double spacing, const FaceMesh& mesh,
                std::vector<bool>& kept) {
   check_positive("the radius of the region", disc.radius);
   const PathDomain domain(mesh);
-  const auto center = FaceLocator(domain.mesh).nearest((1 / spacing) * surface.position(disc.center));
+  const SurfacePoint point =
+      on_surface(surface, disc.center, spacing, "the center of the region", "region_off_surface");
+  const auto center = FaceLocator(domain.mesh).nearest((1 / spacing) * surface.position(point));
   std::fill(kept.begin(), kept.end(), false);
   if (!center) return;
   exact::ExactOptions options;
@@ -149,14 +186,20 @@ std::vector<MeshCurve> longest_loops(const PathDomain& domain) {
 }
 
 /// A curve in space, moved to the mesh.
-MeshCurve on_mesh(const PathDomain& domain, std::span<const Vec3> points, bool closed, double spacing) {
+/// @param name  of the curve, for messages: "seed"
+MeshCurve on_mesh(const PathDomain& domain, std::span<const Vec3> points, bool closed, double spacing,
+                  const std::string& name) {
   const FaceLocator locator(domain.mesh);
   std::vector<MeshPoint> found;
   for (const Vec3& p : points)
     if (const auto point = locator.nearest((1 / spacing) * p)) found.push_back(*point);
   if (found.size() < 2)
-    throw InvalidArgument("seed_off_surface", "the seed curve does not lie in the region",
-                          "choose a curve on the part of the surface that is covered");
+    throw InvalidArgument("seed_off_surface", "the " + name + " curve does not lie in the part that is covered",
+                          "choose a curve there");
+  const Index component = domain.surface.component(found.front());
+  if (!std::ranges::all_of(found, [&](const MeshPoint& p) { return domain.surface.component(p) == component; }))
+    throw InvalidArgument("curve_disconnected", "the surface does not connect the points of the " + name + " curve",
+                          "use points of one component");
   return joined_curve(domain, found, closed && found.size() == points.size());
 }
 
@@ -205,12 +248,7 @@ SurfaceCurve drawn_curve(const Surface& surface, std::span<const Vec3> positions
                          const std::string& name, std::string_view fault) {
   std::vector<CurvePoint> points;
   for (std::size_t k = 0; k < positions.size(); ++k) {
-    const double away = surface.closest_point(positions[k]).distance;
-    if (away > largest_curve_distance * spacing)
-      throw InvalidArgument(fault,
-                            "point " + std::to_string(k) + " of the " + name + " curve is " + detail::number(away) +
-                                " from the surface, more than half of the spacing",
-                            "use points on the surface");
+    point_near(surface, positions[k], spacing, "point " + std::to_string(k) + " of the " + name + " curve", fault);
     points.emplace_back(positions[k]);
   }
   return draw_curve(surface, points, {.closed = closed});
@@ -246,10 +284,12 @@ struct SeedFinder {
   }
   std::vector<MeshCurve> operator()(const CurveSeed& curve) const {
     const SurfaceCurve drawn = drawn_curve(surface, curve.points, curve.closed, spacing, "seed", "seed_off_surface");
-    return {on_mesh(domain, drawn.points, curve.closed, spacing)};
+    return {on_mesh(domain, drawn.points, curve.closed, spacing, "seed")};
   }
   std::vector<MeshCurve> operator()(const LineSeed& line) const {
     const double length = extent(domain.mesh) * spacing;
+    const SurfacePoint start =
+        on_surface(surface, line.point, spacing, "the point of the seed line", "seed_off_surface");
     std::optional<ExactGeodesics> geodesics;
     if (surface.faces().size() > 0) geodesics.emplace(surface);
     std::vector<Vec3> points;
@@ -257,10 +297,10 @@ struct SeedFinder {
       std::vector<Vec3> half;
       try {
         if (geodesics)
-          for (const MeshPoint& p : geodesics->trace(line.point, side * line.direction, length).points)
+          for (const MeshPoint& p : geodesics->trace(start, side * line.direction, length).points)
             half.push_back(geodesics->position(p));
         else
-          half = trace_line(surface, line.point, side * line.direction, length).points;
+          half = trace_line(surface, start, side * line.direction, length).points;
       } catch (const InvalidArgument& e) {  // on the boundary, one side leaves the surface
         if (e.fault() == "axis_along_normal")
           throw InvalidArgument("seed_along_normal", "the direction of the seed line is perpendicular to the surface",
@@ -273,8 +313,8 @@ struct SeedFinder {
       if (side < 0) std::reverse(half.begin(), half.end());
       points.insert(points.end(), half.begin() + (side > 0 && !points.empty() ? 1 : 0), half.end());
     }
-    return {without_returns(domain.mesh, on_mesh(domain, points, false, spacing),
-                            (1 / spacing) * surface.position(line.point))};
+    return {without_returns(domain.mesh, on_mesh(domain, points, false, spacing, "seed"),
+                            (1 / spacing) * surface.position(start))};
   }
 };
 
@@ -291,9 +331,10 @@ Index count_uncovered(const PathDomain& domain, const std::vector<MeshCurve>& se
 FaceMesh region_mesh(const Surface& surface, const ToolPathRegion& region, double spacing) {
   FaceMesh mesh = face_mesh(surface);
   for (Vec3& p : mesh.points) p = (1 / spacing) * p;
-  const auto keep = [](FaceMesh& of, const std::vector<bool>& kept) {
+  const auto keep = [](FaceMesh& of, const std::vector<bool>& kept, const std::string& condition,
+                       const std::string& remedy) {
     if (std::ranges::find(kept, true) == kept.end())
-      throw InvalidArgument("region_empty", "no triangle lies in the region", "enlarge the region");
+      throw InvalidArgument("region_empty", "no triangle lies in the region: none " + condition, remedy);
     if (std::ranges::find(kept, false) != kept.end()) of = part_of(of, kept);
   };
   if (!region.rows.empty()) {
@@ -310,27 +351,39 @@ FaceMesh region_mesh(const Surface& surface, const ToolPathRegion& region, doubl
         for (const Index p : face) inside[to_size(p)] = inside[to_size(p)] && row(p);
     for (std::size_t f = 0; f < kept.size(); ++f)
       kept[f] = std::ranges::all_of(mesh.faces[f], [&](Index p) { return inside[to_size(p)]; });
-    keep(mesh, kept);
+    keep(mesh, kept, "has all corners in the rows", "add rows");
   }
   if (region.facing) {
     const double length = norm(region.facing->direction);
     if (!(length > 0 && std::isfinite(length)))
       throw InvalidArgument("the direction of the region is zero or not finite");
+    if (!(region.facing->angle >= 0 && region.facing->angle <= std::numbers::pi))
+      throw InvalidArgument("the angle of the region is " +
+                            detail::number(region.facing->angle * 180 / std::numbers::pi) +
+                            " degrees; it must lie in [0, 180]");
     std::vector<bool> kept(mesh.size());
     for (std::size_t f = 0; f < kept.size(); ++f) {
       const Vec3 normal = mesh.area_normal(static_cast<Index>(f));
       kept[f] = dot(normal, region.facing->direction) >= std::cos(region.facing->angle) * norm(normal) * length;
     }
-    keep(mesh, kept);
+    keep(mesh, kept,
+         "has a normal within " + detail::number(region.facing->angle * 180 / std::numbers::pi) +
+             " degrees of the direction",
+         "enlarge the angle; where normals point into the part, reverse the direction");
   }
   const auto check_extent = [&] {
-    if (extent(mesh) >= 1) return;
+    const double across = extent(mesh);
+    if (!std::isfinite(across))
+      throw ResourceExhausted("the spacing, " + detail::number(spacing) +
+                              ", is too small for double precision; enlarge it");
+    if (across >= 1) return;
     throw InvalidArgument("spacing_too_large",
                           "the spacing, " + detail::number(spacing) + ", is larger than the region, " +
-                              detail::number(spacing * extent(mesh)) + " across",
+                              detail::number(spacing * across) + " across",
                           "choose a smaller spacing");
   };
   check_extent();
+  check_faces(mesh, spacing);
   const bool is_cut = !region.enclosures.empty() || region.disc;  // along the sides of short faces
   mesh = refined(mesh, is_cut ? longest_side : longest_window_side).mesh;
   for (const ToolPathRegion::Enclosure& enclosure : region.enclosures) {
@@ -340,7 +393,7 @@ FaceMesh region_mesh(const Surface& surface, const ToolPathRegion& region, doubl
                             "a closed curve needs at least three");
     const PathDomain domain(std::move(mesh));
     const SurfaceCurve drawn = drawn_curve(surface, enclosure.points, true, spacing, "region", "region_off_surface");
-    const MeshCurve curve = on_mesh(domain, drawn.points, true, spacing);
+    const MeshCurve curve = on_mesh(domain, drawn.points, true, spacing, "region");
     if (!curve.closed)
       throw InvalidArgument("region_off_surface", "the region curve leaves the part that the other conditions select",
                             "draw the curve there");
@@ -350,7 +403,8 @@ FaceMesh region_mesh(const Surface& surface, const ToolPathRegion& region, doubl
   if (region.disc) {
     std::vector<bool> kept(mesh.size());
     keep_disc(surface, *region.disc, spacing, mesh, kept);
-    keep(mesh, kept);
+    keep(mesh, kept, "lies within the radius around the center", "enlarge the radius");
+    check_extent();
   }
   return mesh;
 }
@@ -360,6 +414,9 @@ ToolPath tool_path(const Surface& surface, const ToolPathOptions& options) {
   const PathDomain region(region_mesh(surface, options.region, options.spacing));
   const FineDomain domain(region);
   const std::vector<MeshCurve> seeds = std::visit(SeedFinder{surface, domain, options.spacing}, options.seed);
+  if (const double across = options.spacing * extent(domain.mesh); options.tool_radius > across)
+    throw InvalidArgument("tool_radius is " + detail::number(options.tool_radius) + "; the region is only " +
+                          detail::number(across) + " across");
   const double phase = std::holds_alternative<BoundarySeed>(options.seed) ? 0.5 : 0;
   ToolPath path;
   path.spacing = options.spacing;

@@ -305,7 +305,7 @@ Ahm.Viewer = class {
     return this.attempt(async () => {
       const spacing = Number(Ahm.number(this.panel.length_of(Math.pow(2, Number(this.element("whole_spacing").value))), 2));
       this.element("whole_spacing_text").textContent = spacing;
-      const request = { spacing: spacing };
+      const request = { spacing: spacing, pattern: this.element("whole_pattern").value };
       if (this.seed) request.curve = this.seed;
       this.panel.say("computing …");
       const answer = await (await this.server.post("whole", request)).json(), scale = this.panel.length_of(1);
@@ -316,6 +316,26 @@ Ahm.Viewer = class {
       this.element("tool_hint").textContent = "passes " + numbers[0] + ", links " + numbers[1] + " (blue), area " + numbers[2] + ", covered " + (100 * answer.covered).toFixed(1) + " %";
       this.panel.say("");
     });
+  }
+
+  // The isolines of a column of the input.
+  ask_isolines() {
+    return this.attempt(async () => {
+      const request = { column: this.element("isolines_column").value, every: Number(this.element("isolines_every").value) };
+      const answer = await (await this.server.post("isolines", request)).json();
+      if (this.tool !== "isolines") return;
+      this.stage.set_marks({ curve: answer.points, pieces: answer.pieces });
+      this.offer(answer.command, { what: "isolines", request: request });
+      this.element("tool_hint").textContent = answer.lines + (answer.lines === 1 ? " line" : " lines") + " of length " + Ahm.number(this.panel.length_of(answer.length), 4);
+      this.panel.say("");
+    });
+  }
+
+  // About ten levels between the smallest and the largest value of the column.
+  offer_levels() {
+    const column = this.columns[this.element("isolines_column").selectedIndex];
+    this.element("isolines_every").value = Ahm.number((column.high - column.low) / 10, 1);
+    return this.ask_isolines();
   }
 
   // Draws the image on the current map, which must start at a point.
@@ -357,17 +377,20 @@ Ahm.Viewer = class {
     const hints = {
       map: "click a point, or drag the red point", path: "click two points for the shortest path between them",
       stroke: "draw a curve on the surface", decal: "choose an image; drag the red point to move it",
-      coverage: "click a point for a tool path around it", whole: "draw a curve, to which the passes are parallel"
+      coverage: "click a point for a tool path around it", whole: "draw a curve, to which the passes are parallel",
+      isolines: "lines where a column of the input has a value"
     };
     this.element("tool_hint").textContent = hints[name];
     this.element("decal_options").hidden = name !== "decal";
     this.element("coverage_options").hidden = name !== "coverage";
     this.element("whole_options").hidden = name !== "whole";
+    this.element("isolines_options").hidden = name !== "isolines";
     this.seed = null;
     this.stage.set_marks(this.stage.map || {});
     if (this.made_map) this.offer(this.stage.map.command, this.made_map);
     this.place_decal();
     if (name === "whole") this.ask_whole();
+    if (name === "isolines") this.offer_levels();
     // Decals and coverage paths require a map that starts at a point.
     if ((name === "decal" || name === "coverage") && this.request && this.request.points) this.ask_map(this.source || this.request.points[0]);
     else if (name === "coverage") this.attempt(() => this.ask_coverage());
@@ -395,6 +418,10 @@ Ahm.Viewer = class {
     };
     options("variant", info.variants, info.variant);
     this.formats = info.formats;
+    this.columns = info.columns;
+    options("isolines_column", info.columns.map((column) => column.name));
+    element("isolines_column").addEventListener("change", () => this.offer_levels());
+    element("isolines_every").addEventListener("change", () => this.ask_isolines());
     const surface = this.stage.surface;
     const covered = Math.min(0.4 * surface.scale, info.radius || Infinity);
     element("coverage_radius").value = Ahm.number(covered, 2);
@@ -411,7 +438,7 @@ Ahm.Viewer = class {
     for (const id of ["method", "variant", "t_coef", "radius", "u_axis"]) element(id).addEventListener("change", method_changed);
     for (const id of ["coverage_radius", "coverage_spacing", "coverage_pattern"])
       element(id).addEventListener("change", () => this.attempt(() => this.ask_coverage()));
-    element("whole_spacing").addEventListener("change", () => this.ask_whole());
+    for (const id of ["whole_spacing", "whole_pattern"]) element(id).addEventListener("change", () => this.ask_whole());
     element("whole_auto").addEventListener("click", () => { this.seed = null; this.ask_whole(); });
     for (const id of ["decal_size", "decal_turn"]) element(id).addEventListener("input", () => this.place_decal());
     element("decal_file").addEventListener("change", () => this.load_decal(element("decal_file").files[0]));

@@ -19,6 +19,7 @@
 
 #include "ahm/applications/coverage.hpp"
 #include "ahm/applications/decal.hpp"
+#include "ahm/applications/isolines.hpp"
 #include "ahm/applications/tool_path.hpp"
 #include "ahm/error.hpp"
 #include "ahm/image.hpp"
@@ -45,14 +46,15 @@ struct SessionOptions {
   unsigned threads = 0;                     ///< 0: one per core
   /// Writes a map from a point or a curve to a file, by row; the extension selects the format. Empty: no export.
   std::function<void(const std::filesystem::path&, const RowLogMap&, const std::vector<double>& quality)> write = {};
-  /// Writes a path, a tool path, or a decal to a file.
+  /// Writes a path, a tool path, isolines, or a decal to a file.
   std::function<void(const std::filesystem::path&, const std::vector<Vec3>&)> write_path = {};
   std::function<void(const std::filesystem::path&, const CoveragePath&)> write_coverage = {};
   std::function<void(const std::filesystem::path&, const ToolPath&)> write_whole = {};
+  std::function<void(const std::filesystem::path&, const std::vector<Isoline>&)> write_isolines = {};
   std::function<void(const std::filesystem::path&, const InverseMap&, const DecalOptions&, const Image&)> write_decal =
       {};
   /// Extensions that these functions support, without the dot, for each kind of result: map, stroke, path, coverage, whole,
-  /// decal.
+  /// isolines, decal.
   std::map<std::string, std::vector<std::string>> formats = {};
   std::function<std::string(const Error&)> worded = {};  ///< formats error messages; empty: what()
   /// Receives the progress of requests: `Progress::report`. Empty: no reports.
@@ -84,14 +86,15 @@ std::string spec(const Surface& surface, const SurfacePoint& point);
 /// | stroke   | "points": along a curve                                | bundle of the map, with the curve             |
 /// | path     | "from", "to"                                           | JSON: "points", "length", "command"           |
 /// | coverage | "source", "coverage_radius", "spacing", "pattern"      | JSON: "points", "pieces", "length", "covered" |
-/// | whole    | "spacing", optional "curve": points of the seed       | JSON: "passes", "links", lengths, "covered"   |
+/// | whole    | "spacing", optional "pattern" and "curve" (the seed)   | JSON: "passes", "links", lengths, "covered"   |
+/// | isolines | "column", "every": step between levels                 | JSON: "points", "pieces", "lines", "length"   |
 /// | export   | "what", "format", and the members of such a request    | the file that the command writes              |
 ///
-/// "what" is "map", "stroke", "path", "coverage", "whole" or "decal". A decal requires "source", "image" (a PNG or JPEG file in base64), "size" (of
+/// "what" is "map", "stroke", "path", "coverage", "whole", "isolines" or "decal". A decal requires "source", "image" (a PNG or JPEG file in base64), "size" (of
 /// the longer side) and "angle" (degrees).
 ///
-/// A newer request of the same client cancels an older one of the same kind. Maps and strokes are one kind; paths and tool paths are the
-/// others. Cancelled requests return status 409. The end of the session cancels all requests. Requests may arrive in a different order, so
+/// A newer request of the same client cancels an older one of the same kind. Maps and strokes are one kind, tool paths and isolines
+/// another one, paths the third. Cancelled requests return status 409. The end of the session cancels all requests. Requests may arrive in a different order, so
 /// clients may number them with "number"; the greater number is newer. Without numbers, the later request is newer.
 /// Requests that fail return status 400, 404, 500 or 503, and a JSON object with "error".
 class Session {

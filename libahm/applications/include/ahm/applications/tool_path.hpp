@@ -9,6 +9,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <variant>
 #include <vector>
@@ -37,24 +38,24 @@ struct CurveSeed {
 /// within half a spacing of itself, and after the length of the diagonal of the bounding box. From a point of the boundary it
 /// runs to one side.
 struct LineSeed {
-  SurfacePoint point;
-  Vec3 direction;  ///< in space; projected to the surface
+  CurvePoint point;  ///< a position is at most half a spacing from the surface, world units
+  Vec3 direction;    ///< in space; projected to the surface. At an angle: `Surface::direction`
 };
 using ToolPathSeed = std::variant<AutomaticSeed, PlaneSeed, BoundarySeed, CurveSeed, LineSeed>;
 
 /// The part of the surface to cover, which fulfills all conditions.
 struct ToolPathRegion {
   std::vector<bool> rows;  ///< one per row: triangles and polygons whose corners are all true; empty: all rows
-  /// Triangles whose normals are at most this far from a direction.
+  /// Triangles that face a direction: (0, 0, 1) is the upper side of a part. What other parts hide is included.
   struct Facing {
     Vec3 direction;
-    double angle;  ///< radians
+    double angle;  ///< largest angle between the normal and the direction, radians, in [0, pi]
   };
   std::optional<Facing> facing;
   /// Triangles within this distance of a point, along the surface.
   struct Disc {
-    SurfacePoint center;
-    double radius;  ///< world units
+    CurvePoint center;  ///< a position is at most half a spacing from the surface, world units
+    double radius;      ///< world units
   };
   std::optional<Disc> disc;
   /// One side of a curve that is joined as by `draw_curve` and closed. The curve divides its component. The largest part is
@@ -152,18 +153,31 @@ struct ToolPath {
 /// passes, or on the edge of the region. Passes are ordered by their nearest ends and improved by 2-opt exchanges.
 /// @throws InvalidArgument (a value that is not finite or out of range; faults "spacing_too_large": larger than the
 /// region, "seed_off_surface", "seed_along_normal": a line without a direction along the surface, "region_off_surface",
-/// "region_not_enclosed": a curve that does not divide the surface, "region_empty"; a surface without positions or triangles),
-/// InvalidGeometry (faces without area, needles: as `exact::exact_map`), ResourceExhausted, Cancelled
+/// "region_not_enclosed": a curve that does not divide the surface, "curve_disconnected": points in different components,
+/// "region_empty"; a surface without positions or triangles), InvalidGeometry (faces without area, needles: as
+/// `exact::exact_map`), ResourceExhausted (more than 2^26 triangles, more than 2^24 poses), Cancelled
 ToolPath tool_path(const Surface& surface, const ToolPathOptions& options);
+
+/// Whether a tool path covers a row, and why not.
+enum class RowCoverage : std::uint8_t {
+  covered,         ///< within 0.6 spacings of a pass, along the surface
+  gap,             ///< farther from the passes
+  no_pass,         ///< in a component of the region without a pass: the seed does not reach it, or it is too small
+  outside_region,  ///< in no triangle of the region
+  no_triangle,     ///< in no triangle of the surface: isolated points of clouds
+  removed,  ///< without a vertex: points removed from the cloud, for example outliers; vertices that no face uses
+};
 
 /// How well a tool path covers a surface.
 struct ToolPathMeasures {
-  double area = 0;         ///< area of the region, world units squared
-  double covered = 0;      ///< share of the area within 0.6 spacings of a pass, along the surface
-  double largest_gap = 0;  ///< largest distance of a point of the region from the nearest pass, in spacings
+  double area = 0;     ///< area of the region, world units squared
+  double covered = 0;  ///< share of the area within 0.6 spacings of a pass, along the surface
+  /// Largest distance of a point of the region from the nearest pass, in spacings; 4: 4 or more, or not reached.
+  double largest_gap = 0;
   /// Share of the pass length that is closer than 0.5 spacings, in space, to another pass, or to the same pass more than two
   /// spacings along it. Points of different components, and on opposite sides of a wall, are not compared.
   double double_covered = 0;
+  std::vector<RowCoverage> rows;  ///< one per row of the surface
 };
 
 /// Measures a tool path independently of its construction. Distances are exact ones from the poses of the passes, and are

@@ -13,6 +13,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "ahm/report.hpp"
@@ -62,5 +63,10 @@ struct Geometry {
   /// The vertex numbers of polygon `face` < face_count().
   std::span<const Index> face(std::size_t face) const noexcept { return faces()[face]; }
 };
+
+/// The names of the columns: x, y, z, and the properties.
+std::vector<std::string> column_names(const Geometry& geometry);
+/// The values of a column, one per point. None: there is no such column.
+std::optional<std::vector<double>> column(const Geometry& geometry, std::string_view name);
 
 }  // namespace ahm::io

@@ -86,6 +86,9 @@ class Surface {
   /// @throws InvalidArgument (a point that is not on this surface, with the faults of `vertex`; an axis that is zero or not
   /// finite; fault "axis_along_normal": an axis within `normal_error` of the normal, whose projection is arbitrary)
   SurfaceSource source(const SurfacePoint& point, const std::optional<Vec3>& u_axis = {}) const;
+  /// The unit vector along the surface at an angle from the u axis of `source(point)`, counterclockwise, in radians.
+  /// @throws InvalidArgument (as `source`; no frame at the point)
+  Vec3 direction(const SurfacePoint& point, double angle) const;
 
   /// The faces as flat triangles, for exact geodesics (`ExactGeodesics`).
   /// @throws InvalidArgument (fault "no_flat_triangles": no flat faces), InvalidGeometry (a face without area)
