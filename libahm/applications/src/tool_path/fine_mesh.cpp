@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numbers>
 #include <numeric>
 
 #include "ahm/error.hpp"
@@ -15,7 +16,11 @@ namespace {
 
 using detail::Half;
 
-constexpr std::size_t max_faces = std::size_t{1} << 26;
+void check_number(double faces) {
+  constexpr double most = 1 << 26;
+  if (!(faces <= most))
+    throw ResourceExhausted("the spacing requires more than 2^26 triangles; enlarge it, or cover a smaller region");
+}
 
 Vec3 corner_position(const FaceMesh& mesh, Index face, std::size_t corner) {
   return mesh.points[static_cast<std::size_t>(mesh.faces[static_cast<std::size_t>(face)][corner])];
@@ -85,8 +90,7 @@ class Splitter {
     }
     if (split == 3)
       faces.insert(faces.end(), {{p[0], m[0], m[2]}, {m[0], p[1], m[1]}, {m[2], m[1], p[2]}, {m[0], m[1], m[2]}});
-    if (faces.size() > max_faces)
-      throw ResourceExhausted("the spacing requires more than 2^26 triangles; enlarge it, or cover a smaller region");
+    check_number(static_cast<double>(faces.size()));
     fine_.parent.resize(faces.size(), coarse_.parent[f]);
     fine_.mesh.twin.resize(3 * faces.size(), -1);
     fine_.mesh.mirrored.resize(3 * faces.size(), 0);
@@ -131,6 +135,12 @@ class Splitter {
 };
 
 }  // namespace
+
+void check_refinement(const FaceMesh& mesh, double longest) {
+  double area = 0;
+  for (std::size_t f = 0; f < mesh.size(); ++f) area += mesh.area(static_cast<Index>(f));
+  check_number(area / (std::numbers::sqrt3 / 4 * longest * longest));
+}
 
 Refinement refined(const FaceMesh& mesh, double longest) {
   Refinement result{mesh, std::vector<Index>(mesh.size())};

@@ -19,6 +19,10 @@ struct Refinement {
   std::vector<Index> parent;  ///< per face: the coarse face that contains it, with the same orientation
 };
 
+/// Checks that triangles with sides of at most `longest` can have the area of a mesh, before the work is done.
+/// @throws ResourceExhausted (more than 2^26 faces)
+void check_refinement(const FaceMesh& mesh, double longest);
+
 /// A mesh of the same shape with sides of at most `longest`.
 /// @throws ResourceExhausted (more than 2^26 faces)
 Refinement refined(const FaceMesh& mesh, double longest);

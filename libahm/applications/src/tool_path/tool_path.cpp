@@ -384,6 +384,7 @@ FaceMesh region_mesh(const Surface& surface, const ToolPathRegion& region, doubl
   };
   check_extent();
   check_faces(mesh, spacing);
+  check_refinement(mesh, longest_side);
   const bool is_cut = !region.enclosures.empty() || region.disc;  // along the sides of short faces
   mesh = refined(mesh, is_cut ? longest_side : longest_window_side).mesh;
   for (const ToolPathRegion::Enclosure& enclosure : region.enclosures) {
