@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <string>
 #include <utility>
@@ -130,27 +131,27 @@ namespace {
 /// vertices.
 constexpr Offset windows_per_vertex = 8, min_windows = Offset{1} << 17;
 
-/// Converts the result of a front over the triangles of a sheet to seeds of a front over the graph. The triangles are as noisy
-/// as the points, so the seeds are not exact. Their expected error combines the error of `other`, a front from the source
-/// without windows, with the difference to it. The difference is divided by the square root of 2, as for two equally good
-/// estimates.
-/// @param other  null: no errors
-std::vector<Wavefront::Seed> seeds_of_front(const Wavefront& front, const Wavefront* other, bool frames) {
-  std::vector<Wavefront::Seed> seeds;
-  for (const Vertex v : front.reached()) {
-    const double distance = front.distance(v);
-    const Vec2 direction = front.direction(v);
-    double error = 0;
-    if (other != nullptr) {
-      const Vec2 other_direction = other->direction(v);
-      const double share = other->distance(v) / distance;
-      const double apart =
-          std::hypot(direction[0] - share * other_direction[0], direction[1] - share * other_direction[1]);
-      error = std::hypot(apart / std::numbers::sqrt2, other->direction_error(v));
-    }
-    seeds.push_back({v, distance, direction, frames ? front.arrival(v) : Vec2{NAN, NAN}, front.nearest(v),
-                     std::isfinite(error) ? error : 0, front.is_mirrored(v)});
+/// Sets the expected errors of seeds from the triangles of a cloud. These are as noisy as the points, so the seeds are not exact.
+/// The error combines the error of `other`, a front from the source without windows, with the difference to it. The difference
+/// is divided by the square root of 2, as for two equally good estimates.
+void set_errors(std::span<Wavefront::Seed> seeds, const Wavefront& other) {
+  for (Wavefront::Seed& seed : seeds) {
+    const Vec2 other_direction = other.direction(seed.vertex);
+    const double share = other.distance(seed.vertex) / seed.distance;
+    const double apart =
+        std::hypot(seed.direction[0] - share * other_direction[0], seed.direction[1] - share * other_direction[1]);
+    const double error = std::hypot(apart / std::numbers::sqrt2, other.direction_error(seed.vertex));
+    seed.error = std::isfinite(error) ? error : 0;
   }
+}
+
+/// The polar coordinates of a front.
+/// @param arrivals  whether directions of arrival are computed; otherwise they are NaN
+std::vector<Wavefront::Seed> seeds_of_front(const Wavefront& front, bool arrivals) {
+  std::vector<Wavefront::Seed> seeds;
+  for (const Vertex v : front.reached())
+    seeds.push_back({v, front.distance(v), front.direction(v), arrivals ? front.arrival(v) : Vec2{NAN, NAN},
+                     front.nearest(v), front.direction_error(v), front.is_mirrored(v)});
   return seeds;
 }
 
@@ -191,8 +192,35 @@ class PolarMapSolver::Fronts {
   /// @param seeds   empty: the front starts at the source
   /// @param errors  whether the front has errors of directions on clouds, which takes a second front
   const Wavefront& around(const Source& source, const Seeds& seeds, const PolarMapOptions& options, bool errors) {
+    return around(source, seeds ? exact_seeds(source.vertices().front(), seeds, options, 0) : ExactGeodesics::Seeds{},
+                  options, errors);
+  }
+
+  /// Polar coordinates, as `LocalPolarCoordinates`. Where windows reach all vertices, no front is needed.
+  PolarNeighbors neighbors(const Source& source, const Seeds& seeds, const PolarMapOptions& options, Index enough,
+                           bool errors) {
+    auto exact = seeds ? exact_seeds(source.vertices().front(), seeds, options, enough) : ExactGeodesics::Seeds{};
+    const bool is_complete =
+        exact.horizon >= options.radius || (enough > 0 && std::ssize(exact.vertices) >= enough);
+    if (exact.vertices.empty() || !is_complete || longest_edge_to_left_out(exact.vertices) > 0) {
+      neighbors_ = seeds_of_front(around(source, std::move(exact), options, errors), true);
+      return {neighbors_, options.radius};
+    }
+    neighbors_ = std::move(exact.vertices);
+    if (errors && solver_.triangle_graph_) {
+      front_.clear();
+      front_.add(source);
+      front_.run(exact.horizon, options.progress.stop);
+      set_errors(neighbors_, front_);
+    }
+    return {neighbors_, exact.horizon};
+  }
+
+ private:
+  /// @param exact  the vertices that windows reach; empty: the front starts at the source
+  const Wavefront& around(const Source& source, ExactGeodesics::Seeds exact, const PolarMapOptions& options,
+                          bool errors) {
     front_.clear();
-    const auto exact = seeds ? exact_seeds(source.vertices().front(), seeds, options) : ExactGeodesics::Seeds{};
     if (exact.vertices.empty()) {
       front_.add(source);
       front_.run(options.radius, options.progress.stop);
@@ -204,38 +232,43 @@ class PolarMapSolver::Fronts {
       run_from(front_, source, exact.vertices, continues, options);
       return front_;
     }
+    std::vector<Wavefront::Seed> all = std::move(exact.vertices);
+    const exact::PolyhedralSurface& triangles = solver_.geodesics_->triangles().surface;
+    const Index component = triangles.component(all.front().vertex.index);
+    if (!is_enough) {
+      if (!over_) over_.emplace(*solver_.triangle_graph_, solver_.triangle_one_rings_, true);
+      run_from(*over_, source, all, true, options);
+      all = seeds_of_front(*over_, options.frames);
+    }
     if (errors) {
       front_.add(source);
       front_.run(options.radius, options.progress.stop);
+      set_errors(all, front_);
     }
-    if (!over_) over_.emplace(*solver_.triangle_graph_, solver_.triangle_one_rings_, true);
-    run_from(*over_, source, exact.vertices, !is_enough, options);
-    const auto all = seeds_of_front(*over_, errors ? &front_ : nullptr, options.frames);
     // Vertices with triangles that windows have not reached are beyond the radius.
-    const exact::PolyhedralSurface& triangles = solver_.geodesics_->triangles().surface;
-    const Index component = triangles.component(exact.vertices.front().vertex.index);
     const auto has_triangles = [&triangles, component](Vertex v) { return triangles.component(v.index) == component; };
     run_from(front_, source, all, continues, options,
              is_enough ? std::function<bool(Vertex)>(has_triangles) : std::function<bool(Vertex)>());
     return front_;
   }
 
- private:
-  /// The vertices that windows reach up to the radius. Empty where windows get lost in needles, or the source is outside of the
-  /// triangles.
+  /// The vertices that windows reach up to the radius, or at least `enough` of them if it is > 0. Empty where windows get lost in
+  /// needles, or the source is outside of the triangles.
   /// @param source  vertex at the source
-  ExactGeodesics::Seeds exact_seeds(Vertex source, const Seeds& seeds, const PolarMapOptions& options) {
+  ExactGeodesics::Seeds exact_seeds(Vertex source, const Seeds& seeds, const PolarMapOptions& options, Index enough) {
     if (!windows_) windows_.emplace(*solver_.geodesics_);
     ExactMapOptions exact{.radius = options.radius,
                           .max_windows = solver_.max_windows(source),
+                          .max_vertices = enough,
                           .frames = options.frames || solver_.graph_->transport_layout().may_reflect(),
                           .progress = options.progress};
     try {
       ExactGeodesics::Seeds found = seeds(exact, *windows_);
-      const double edge = std::isinf(options.radius) ? 0 : longest_edge_to_left_out(found.vertices);
-      if (edge == 0) return found;
+      const double edge = longest_edge_to_left_out(found.vertices);
+      if (edge == 0 || found.horizon == std::numeric_limits<double>::infinity()) return found;
       // Paths to vertices without triangles may cross edges whose ends are beyond the radius.
       exact.radius += edge;
+      exact.max_vertices = 0;
       return seeds(exact, *windows_);
     } catch (const InvalidGeometry&) {
       return {};
@@ -277,6 +310,7 @@ class PolarMapSolver::Fronts {
   Wavefront front_;
   std::optional<Wavefront> over_;  ///< for clouds: over the selected triangles
   std::optional<ExactGeodesics::Workspace> windows_;
+  std::vector<Wavefront::Seed> neighbors_;  ///< result of `neighbors`
 };
 
 Offset PolarMapSolver::max_windows(Vertex source) const {
@@ -363,14 +397,14 @@ LocalMaps PolarMapSolver::local_maps(std::span<const Source> sources, const Loca
 
 LocalMaps PolarMapSolver::local_maps(std::span<const Source> sources, const LocalMapOptions& options,
                                      const std::function<Seeds(std::size_t)>& seeds) const {
-  const auto make_front = [&]() -> LocalFront {
+  const auto make_coordinates = [&]() -> LocalPolarCoordinates {
     return [&, fronts = std::make_shared<Fronts>(*this), small = small_map_options(options)](
-               std::size_t s, double radius) mutable -> const Wavefront& {
+               std::size_t s, double radius, Index enough) mutable {
       small.radius = radius;
-      return fronts->around(sources[s], seeds(s), small, options.quality);
+      return fronts->neighbors(sources[s], seeds(s), small, enough, options.quality);
     };
   };
-  return local_polar_maps(*graph_, sources, options, make_front);
+  return local_polar_maps(*graph_, sources, options, make_coordinates);
 }
 
 Method choose_method(const TangentGraph& graph) { return graph.is_delaunay() ? Method::polar : Method::heat; }
