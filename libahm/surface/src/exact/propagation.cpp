@@ -64,8 +64,10 @@ void Propagation::place_targets(std::span<const MeshPoint> targets) {
 // ---------------------------------------------------------------------------------------------- sources
 
 void Propagation::add_sources(std::span<const MeshPoint> points) {
-  // Components without a source do not determine the buckets. In buckets that are too wide the order of windows is lost.
-  double edge = infinity;
+  // Components without a source do not determine the buckets. In buckets that are too wide the order of windows is lost. The sides
+  // around the source may be much shorter than the mean; a small horizon is a few of them.
+  constexpr double sides_to_horizon = 2;
+  double edge = horizon_ / sides_to_horizon;
   for (const MeshPoint& point : points)
     edge = std::min(edge, surface_.component_details(surface_.component(point)).mean_length);
   windows_.clear(bucket_width * edge);
