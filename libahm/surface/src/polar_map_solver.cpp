@@ -10,6 +10,7 @@
 
 #include "ahm/error.hpp"
 #include "ahm/graph/csr_graph.hpp"
+#include "ahm/maps/straight_line.hpp"
 #include "ahm/surface/exact/flat_triangles.hpp"
 #include "ahm/util/memory.hpp"
 #include "ahm/util/small_math.hpp"
@@ -192,34 +193,42 @@ class PolarMapSolver::Fronts {
   /// @param seeds   empty: the front starts at the source
   /// @param errors  whether the front has errors of directions on clouds, which takes a second front
   const Wavefront& around(const Source& source, const Seeds& seeds, const PolarMapOptions& options, bool errors) {
-    return around(source, seeds ? exact_seeds(source.vertices().front(), seeds, options, 0) : ExactGeodesics::Seeds{},
-                  options, errors);
+    return around(source, seeds, exact_seeds(source, seeds, options, 0), options, errors);
   }
 
   /// Polar coordinates, as `LocalPolarCoordinates`. Where windows reach all vertices, no front is needed.
-  PolarNeighbors neighbors(const Source& source, const Seeds& seeds, const PolarMapOptions& options, Index enough,
-                           bool errors) {
-    auto exact = seeds ? exact_seeds(source.vertices().front(), seeds, options, enough) : ExactGeodesics::Seeds{};
-    const bool is_complete =
-        exact.horizon >= options.radius || (enough > 0 && std::ssize(exact.vertices) >= enough);
-    if (exact.vertices.empty() || !is_complete || longest_edge_to_left_out(exact.vertices) > 0) {
-      neighbors_ = seeds_of_front(around(source, std::move(exact), options, errors), true);
+  /// @param from  the coordinates may omit vertices whose straight line from here is longer than the horizon; none: they omit none
+  PolarNeighbors neighbors(const Source& source, const Seeds& seeds, PolarMapOptions options, Index enough,
+                           const std::optional<Vec3>& from, bool errors) {
+    ExactGeodesics::Seeds exact = exact_seeds(source, seeds, options, enough);
+    if (enough > 0 && std::ssize(exact.vertices) >= enough)
+      options.radius = std::min({options.radius, exact.horizon, radius_of(exact.vertices, enough, from)});
+    if (exact.vertices.empty() || exact.horizon < options.radius ||
+        may_reach_left_out(exact.vertices, from, options.radius)) {
+      neighbors_ = seeds_of_front(around(source, seeds, std::move(exact), options, errors), true);
       return {neighbors_, options.radius};
     }
     neighbors_ = std::move(exact.vertices);
     if (errors && solver_.triangle_graph_) {
       front_.clear();
       front_.add(source);
-      front_.run(exact.horizon, options.progress.stop);
+      front_.run(options.radius, options.progress.stop);
       set_errors(neighbors_, front_);
     }
-    return {neighbors_, exact.horizon};
+    return {neighbors_, options.radius};
   }
 
  private:
-  /// @param exact  the vertices that windows reach; empty: the front starts at the source
-  const Wavefront& around(const Source& source, ExactGeodesics::Seeds exact, const PolarMapOptions& options,
-                          bool errors) {
+  /// @param exact  the vertices that windows reach up to the radius
+  const Wavefront& around(const Source& source, const Seeds& seeds, ExactGeodesics::Seeds exact,
+                          const PolarMapOptions& options, bool errors) {
+    const double edge = longest_edge_to_left_out(exact.vertices);
+    if (edge > 0 && !std::isinf(exact.horizon)) {
+      // Paths to vertices without triangles may cross edges whose ends are beyond the radius.
+      PolarMapOptions farther = options;
+      farther.radius += edge;
+      exact = exact_seeds(source, seeds, farther, 0);
+    }
     front_.clear();
     if (exact.vertices.empty()) {
       front_.add(source);
@@ -227,14 +236,13 @@ class PolarMapSolver::Fronts {
       return front_;
     }
     const bool is_enough = exact.horizon >= options.radius;
-    const bool continues = !is_enough || longest_edge_to_left_out(exact.vertices) > 0;
+    const bool continues = !is_enough || edge > 0;
     if (!solver_.triangle_graph_) {
       run_from(front_, source, exact.vertices, continues, options);
       return front_;
     }
     std::vector<Wavefront::Seed> all = std::move(exact.vertices);
-    const exact::PolyhedralSurface& triangles = solver_.geodesics_->triangles().surface;
-    const Index component = triangles.component(all.front().vertex.index);
+    const Index component = component_of(all.front().vertex.index);
     if (!is_enough) {
       if (!over_) over_.emplace(*solver_.triangle_graph_, solver_.triangle_one_rings_, true);
       run_from(*over_, source, all, true, options);
@@ -246,49 +254,81 @@ class PolarMapSolver::Fronts {
       set_errors(all, front_);
     }
     // Vertices with triangles that windows have not reached are beyond the radius.
-    const auto has_triangles = [&triangles, component](Vertex v) { return triangles.component(v.index) == component; };
+    const auto has_triangles = [this, component](Vertex v) { return component_of(v.index) == component; };
     run_from(front_, source, all, continues, options,
              is_enough ? std::function<bool(Vertex)>(has_triangles) : std::function<bool(Vertex)>());
     return front_;
   }
 
-  /// The vertices that windows reach up to the radius, or at least `enough` of them if it is > 0. Empty where windows get lost in
-  /// needles, or the source is outside of the triangles.
-  /// @param source  vertex at the source
-  ExactGeodesics::Seeds exact_seeds(Vertex source, const Seeds& seeds, const PolarMapOptions& options, Index enough) {
+  /// The vertices that windows reach up to the radius, or at least `enough` of them if it is > 0. Empty without seeds, where windows
+  /// get lost in needles, and if the source is outside of the triangles.
+  ExactGeodesics::Seeds exact_seeds(const Source& source, const Seeds& seeds, const PolarMapOptions& options,
+                                    Index enough) {
+    if (!seeds) return {};
     if (!windows_) windows_.emplace(*solver_.geodesics_);
-    ExactMapOptions exact{.radius = options.radius,
-                          .max_windows = solver_.max_windows(source),
-                          .max_vertices = enough,
-                          .frames = options.frames || solver_.graph_->transport_layout().may_reflect(),
-                          .progress = options.progress};
+    const ExactMapOptions exact{.radius = options.radius,
+                                .max_windows = solver_.max_windows(source.vertices().front()),
+                                .max_vertices = enough,
+                                .frames = options.frames || solver_.graph_->transport_layout().may_reflect(),
+                                .progress = options.progress};
     try {
-      ExactGeodesics::Seeds found = seeds(exact, *windows_);
-      const double edge = longest_edge_to_left_out(found.vertices);
-      if (edge == 0 || found.horizon == std::numeric_limits<double>::infinity()) return found;
-      // Paths to vertices without triangles may cross edges whose ends are beyond the radius.
-      exact.radius += edge;
-      exact.max_vertices = 0;
       return seeds(exact, *windows_);
     } catch (const InvalidGeometry&) {
       return {};
     }
   }
 
-  /// On clouds windows cannot reach vertices without triangles, or with those of another component. The longest edge at seeds
-  /// that have such neighbors, world units; 0: there are none.
-  double longest_edge_to_left_out(std::span<const Wavefront::Seed> seeds) const {
-    if (!solver_.triangle_graph_) return 0;
-    const exact::PolyhedralSurface& triangles = solver_.geodesics_->triangles().surface;
-    double longest = 0;
+  /// A radius within which at least `count` seeds lie, also if distances are increased to the length of the straight line.
+  double radius_of(std::span<const Wavefront::Seed> seeds, Index count, const std::optional<Vec3>& from) {
+    distances_.clear();
     for (const Wavefront::Seed& seed : seeds) {
-      const Index vertex = seed.vertex.index;
-      const Star star = solver_.graph_->star(vertex);
-      if (std::ranges::all_of(star.neighbors,
-                              [&](Index j) { return triangles.component(j) == triangles.component(vertex); }))
-        continue;
-      for (std::size_t e = 0; e < star.degree(); ++e) longest = std::max(longest, length(star.log(e)));
+      const auto frame = from ? solver_.graph_->frame(seed.vertex.index) : std::optional<Frame>();
+      distances_.push_back(frame ? bounded_distance(distance(frame->origin, *from), seed.distance) : seed.distance);
     }
+    const auto last = distances_.begin() + (count - 1);
+    std::nth_element(distances_.begin(), last, distances_.end());
+    return *last * (1 + 1e-12);
+  }
+
+  Index component_of(Index vertex) const { return solver_.geodesics_->triangles().surface.component(vertex); }
+
+  /// On clouds windows cannot reach vertices without triangles, or with those of another component. Calls visit(seed, neighbor) for
+  /// such neighbors of seeds, until it returns true. @return whether it did
+  template <class Visit>
+  bool any_left_out(std::span<const Wavefront::Seed> seeds, const Visit& visit) const {
+    if (!solver_.triangle_graph_) return false;
+    return std::ranges::any_of(seeds, [&](const Wavefront::Seed& seed) {
+      const Index vertex = seed.vertex.index, component = component_of(vertex);
+      return std::ranges::any_of(solver_.graph_->star(vertex).neighbors,
+                                 [&](Index j) { return component_of(j) != component && visit(vertex, j); });
+    });
+  }
+
+  /// Whether a front may reach left out vertices whose straight line from the source is at most as long as the radius.
+  bool may_reach_left_out(std::span<const Wavefront::Seed> seeds, const std::optional<Vec3>& from,
+                          double radius) const {
+    const auto is_near = [&](Index j) {
+      const auto frame = from ? solver_.graph_->frame(j) : std::optional<Frame>();
+      return !frame || distance(frame->origin, *from) <= radius;
+    };
+    return any_left_out(seeds, [&](Index vertex, Index j) {
+      return is_near(j) || std::ranges::any_of(solver_.graph_->star(j).neighbors, [&](Index next) {
+               return component_of(next) != component_of(vertex) && is_near(next);
+             });
+    });
+  }
+
+  /// The longest edge of seeds that paths to left out neighbors may cross, world units; 0: there are no such neighbors. It ends at a common
+  /// neighbor of both.
+  double longest_edge_to_left_out(std::span<const Wavefront::Seed> seeds) const {
+    double longest = 0;
+    any_left_out(seeds, [&](Index vertex, Index j) {
+      const Star star = solver_.graph_->star(vertex), other = solver_.graph_->star(j);
+      for (std::size_t e = 0; e < star.degree(); ++e)
+        if (const Index end = star.neighbors[e]; end == j || std::ranges::find(other.neighbors, end) != other.neighbors.end())
+          longest = std::max(longest, length(star.log(e)));
+      return false;
+    });
     return longest * solver_.graph_->length_unit();
   }
 
@@ -311,6 +351,7 @@ class PolarMapSolver::Fronts {
   std::optional<Wavefront> over_;  ///< for clouds: over the selected triangles
   std::optional<ExactGeodesics::Workspace> windows_;
   std::vector<Wavefront::Seed> neighbors_;  ///< result of `neighbors`
+  std::vector<double> distances_;
 };
 
 Offset PolarMapSolver::max_windows(Vertex source) const {
@@ -401,7 +442,9 @@ LocalMaps PolarMapSolver::local_maps(std::span<const Source> sources, const Loca
     return [&, fronts = std::make_shared<Fronts>(*this), small = small_map_options(options)](
                std::size_t s, double radius, Index enough) mutable {
       small.radius = radius;
-      return fronts->neighbors(sources[s], seeds(s), small, enough, options.quality);
+      const auto from =
+          options.bound_by_straight_line ? straight_line_origin(*graph_, sources[s]) : std::optional<Vec3>();
+      return fronts->neighbors(sources[s], seeds(s), small, enough, from, options.quality);
     };
   };
   return local_polar_maps(*graph_, sources, options, make_coordinates);
