@@ -325,7 +325,8 @@ class PolarMapSolver::Fronts {
     any_left_out(seeds, [&](Index vertex, Index j) {
       const Star star = solver_.graph_->star(vertex), other = solver_.graph_->star(j);
       for (std::size_t e = 0; e < star.degree(); ++e)
-        if (const Index end = star.neighbors[e]; end == j || std::ranges::find(other.neighbors, end) != other.neighbors.end())
+        if (const Index end = star.neighbors[e];
+            end == j || std::ranges::find(other.neighbors, end) != other.neighbors.end())
           longest = std::max(longest, length(star.log(e)));
       return false;
     });

@@ -2,6 +2,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <compare>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -125,7 +126,8 @@ class Collector {
     double farthest = 0;
     for (const Neighbor& neighbor : order_) farthest = std::max(farthest, vertices[neighbor.place].distance);
     for (std::size_t place = 0; place < vertices.size(); ++place)
-      if (vertices[place].distance <= farthest) (*places_)[vertices[place].vertex.index] = static_cast<Index>(place + 1);
+      if (vertices[place].distance <= farthest)
+        (*places_)[vertices[place].vertex.index] = static_cast<Index>(place + 1);
     const double h = graph_.length_unit() * graph_.mean_edge_length();
     for (const Neighbor& neighbor : order_) {
       const Wavefront::Seed& vertex = vertices[neighbor.place];
@@ -161,7 +163,7 @@ class Collector {
   const LocalMapOptions& options_;
   LocalPolarCoordinates coordinates_;
   Ball ball_;
-  std::vector<Neighbor> order_;                ///< the neighbors, nearest first
+  std::vector<Neighbor> order_;               ///< the neighbors, nearest first
   std::optional<SparseArray<Index>> places_;  ///< 1 + place of each vertex in the polar coordinates; 0: not in the map
 };
 
