@@ -14,6 +14,7 @@
 #include "ahm/surface/exact/flat_triangles.hpp"
 #include "ahm/util/memory.hpp"
 #include "ahm/util/small_math.hpp"
+#include "ahm/util/vec.hpp"
 
 namespace ahm::detail {
 
