@@ -215,6 +215,9 @@ class PolarMapSolver::Fronts {
       front_.add(source);
       front_.run(options.radius, options.progress.stop);
       set_errors(neighbors_, front_);
+      // A front stores errors in single precision, so those of local and whole maps are equal only if both are stored in one.
+      run_from(front_, source, neighbors_, false, options);
+      neighbors_ = seeds_of_front(front_, true);
     }
     return {neighbors_, options.radius};
   }
