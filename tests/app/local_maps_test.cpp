@@ -63,7 +63,9 @@ TEST_F(LocalMapsCommand, WritesTheQualityIfRequested) {
   const auto quality = array<double>("quality");
   ASSERT_EQ(2 * quality.size(), log.size());
   EXPECT_EQ(array<double>("log"), log);
-  for (const double q : quality) ASSERT_GT(q, 0.99);
+  for (const double q : quality) ASSERT_TRUE(q > 0 && q <= 1) << q;
+  // Next to the rim quality is too low for some.
+  EXPECT_GT(std::ranges::count_if(quality, [](double q) { return q > 0.99; }), 0.9 * quality.size());
   std::string header;
   run_ok("local-maps plane.xyz --k 9 --quality --pad --float32 -o maps.npz");
   array<float>("quality", &header);
