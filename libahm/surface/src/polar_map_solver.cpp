@@ -227,7 +227,7 @@ class PolarMapSolver::Fronts {
   const Wavefront& around(const Source& source, const Seeds& seeds, ExactGeodesics::Seeds exact,
                           const PolarMapOptions& options, bool errors) {
     const double edge = longest_edge_to_left_out(exact.vertices);
-    if (edge > 0 && !std::isinf(exact.horizon)) {
+    if (edge > 0 && !std::isinf(options.radius)) {
       // Paths to vertices without triangles may cross edges whose ends are beyond the radius.
       PolarMapOptions farther = options;
       farther.radius += edge;
