@@ -46,33 +46,39 @@ class Edges(NamedTuple):
     """The entries of local maps as directed edges, from the neighbor j to the source i. Returned by `edges`."""
 
     edge_index: Any  #: (2, e) int64: rows of the neighbors, rows of the sources
-    log: Any  #: (e, 2) float32: coordinates of j in the frame of i, world units
+    log: Any  #: (e, 2) float32 (or float64, as all below): coordinates of j in the frame of i, world units
     transport: Optional[Any]  #: (e,) complex64: times u + iv of a vector at j, in the frame of j, is u + iv in the frame of i
     distance: Any  #: (e,) float32: geodesic distance, world units
     weight: Any  #: (e,) float32: area of j, for integration
     quality: Optional[Any] = None  #: (e,) float32: how reliable `log` is, in (0, 1]; None if the maps were made without
 
 
-def edges(maps: _Maps) -> Edges:
+def edges(maps: _Maps, dtype: Any = torch.float32) -> Edges:
     """The entries of local maps as tensors on the CPU, with the edges of each source nearest first. Every row is its own first neighbor.
 
     maps : local maps of rows, from `ahm.local_maps`. `Edges.transport` and `Edges.quality` are None if they have none.
+    dtype : torch.float32, or torch.float64. With float64 all tensors except `edge_index` share the memory of the arrays of `maps`, without
+        copies: a change of one changes the other. `transport` is then a view with its conjugate bit set (`resolve_conj` makes a copy).
 
     `transport` is the inverse of `ahm.LocalMaps.transport`, because messages go from the neighbor to the source. Rows without a
     vertex have no edges, and no number is NaN.
 
-    Raises ValueError (a source that is not a row; maps of another dimension than 2; a surface that is not orientable, whose
+    Raises ValueError (another dtype; a source that is not a row; maps of another dimension than 2; a surface that is not orientable, whose
     transports are no rotations: make the maps with transport=False).
     """
+    if dtype not in (torch.float32, torch.float64):
+        raise ValueError(f"dtype: expected torch.float32 or torch.float64, got {dtype!r}")
     if maps.log.ndim != 2 or maps.log.shape[1] != 2:
         raise ValueError(f"maps: expected maps of dimension 2, got log of shape {maps.log.shape}")
     if maps.transport is not None and maps.transport.ndim != 2:
         raise ValueError("maps: the surface is not orientable, so transports are no complex numbers; use transport=False")
-    transport = None
-    if maps.transport is not None:
-        transport = torch.from_numpy(np.conj(maps.transport.astype(np.float32).view(np.complex64)[:, 0]))
-    log, distance, weight, quality = (None if values is None else torch.from_numpy(values.astype(np.float32))
-                                      for values in (maps.log, maps.distance, maps.weight, maps.quality))
+    log, distance, weight, quality, transport = (
+        None if values is None else torch.from_numpy(values).to(dtype)  # float64: no copy
+        for values in (maps.log, maps.distance, maps.weight, maps.quality, maps.transport))
+    if transport is not None:
+        transport = torch.view_as_complex(transport).conj()
+        if dtype is torch.float32:
+            transport = transport.resolve_conj()
     return Edges(torch.from_numpy(maps.edge_index()), log, transport, distance, weight, quality)
 
 

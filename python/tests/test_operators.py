@@ -32,6 +32,73 @@ def test_gradients_are_those_of_diffusion_net_on_flat_meshes(flat_surfaces):
         np.testing.assert_allclose([gx[i, i], gy[i, i]], -np.array([gx[i, neighbors], gy[i, neighbors]]).sum(axis=1), atol=1e-12)
 
 
+def cotangent_laplacian(V, F):
+    """Dense L of (L u)_i = sum_j w_ij (u_i - u_j), w_ij the mean of the cotangents opposite of the edge."""
+    L = np.zeros((len(V), len(V)))
+    for s in range(3):
+        i, j, k = F[:, s], F[:, (s + 1) % 3], F[:, (s + 2) % 3]
+        a, b = V[i] - V[k], V[j] - V[k]
+        w = 0.5 * (a * b).sum(1) / np.linalg.norm(np.cross(a, b), axis=1)
+        for rows, columns, sign in ((i, j, -1), (j, i, -1), (i, i, 1), (j, j, 1)):
+            np.add.at(L, (rows, columns), sign * w)
+    return L
+
+
+def stars(V, F):
+    """For each vertex of a closed mesh: its neighbors in order, and the angles of the edges to them, with a sum of 2 pi."""
+    following = [{} for _ in V]
+    for face in F:
+        for s in range(3):
+            i, j, k = face[s], face[(s + 1) % 3], face[(s + 2) % 3]
+            a, b = V[j] - V[i], V[k] - V[i]
+            following[i][j] = k, np.arccos(a @ b / np.linalg.norm(a) / np.linalg.norm(b))
+    for star in following:
+        ring, angles = [min(star)], [0.0]
+        for _ in range(len(star) - 1):
+            k, angle = star[ring[-1]]
+            ring.append(k)
+            angles.append(angles[-1] + angle)
+        yield ring, np.array(angles) * 2 * np.pi / sum(angle for _, angle in star.values())
+
+
+def products(E):
+    """B^T B for the least-squares gradient B = (E^T E)^-1 E^T, which does not depend on the axes."""
+    B = np.linalg.solve(E.T @ E, E.T)
+    return B.T @ B
+
+
+def differences_of_gradients(V, F):
+    """Largest relative differences of the gradient to the least-squares gradient of DiffusionNet, up to rotations of the frames: from the
+    logs of the edges, and from the edges projected to the tangent planes."""
+    ops = ahm.operators(ahm.TriangleMesh(V, F, delaunay=False))
+    gx, gy = (G.toarray() / ops.length_unit for G in ops.gradient)
+    worst = np.zeros(2)
+    for i, (ring, angles) in enumerate(stars(V, F)):
+        edges = V[ring] - V[i]
+        logs = np.linalg.norm(edges, axis=1)[:, None] * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+        found = np.outer(gx[i, ring], gx[i, ring]) + np.outer(gy[i, ring], gy[i, ring])
+        for c, E in enumerate((logs, edges @ ops.frames[i, :2].T)):
+            worst[c] = max(worst[c], abs(found - products(E)).max() / abs(found).max())
+    return worst
+
+
+def test_operators_are_those_of_diffusion_net_on_curved_meshes():
+    """The cotangent Laplacian, the lumped mass, and the least-squares gradient, written independently."""
+    V, F = ahm.shapes.sphere(2)
+    V = V * (1 + 0.1 * np.sin(5 * V[:, :1]) * np.cos(4 * V[:, 1:2]))
+    ops = ahm.operators(ahm.TriangleMesh(V, F, delaunay=False, clamp_weights=False))
+    expected = cotangent_laplacian(V, F)
+    np.testing.assert_allclose(ops.laplacian.toarray(), expected, atol=1e-6 * abs(expected).max())
+    areas = np.linalg.norm(np.cross(V[F[:, 1]] - V[F[:, 0]], V[F[:, 2]] - V[F[:, 0]]), axis=1) / 2
+    np.testing.assert_allclose(ops.mass.diagonal() * ops.length_unit**2, np.bincount(F.ravel(), np.repeat(areas / 3, 3)), rtol=1e-6)
+    assert differences_of_gradients(V, F)[0] < 1e-6
+
+
+def test_gradients_differ_from_those_of_projected_edges_by_the_square_of_the_edge_length():
+    coarse, fine = (differences_of_gradients(*ahm.shapes.sphere(level))[1] for level in (2, 3))
+    assert 3 * fine < coarse < 0.1
+
+
 def test_eigenpairs_are_those_of_scipy(sphere, flat_surfaces):
     for surface in (sphere, ahm.PointCloud(sphere.points), flat_surfaces["refined"], flat_surfaces["grid"]):
         ops = ahm.operators(surface, k_eig=20)

@@ -30,6 +30,21 @@ def test_edges_are_the_entries_of_the_maps(sphere):
     assert ahm.torch.edges(ahm.local_maps(sphere, 0.4, transport=False)).transport is None
 
 
+def test_edges_in_double_precision_share_the_memory_of_the_maps(sphere):
+    maps = ahm.local_maps(sphere, 0.4, quality=True)
+    found, single = ahm.torch.edges(maps, torch.float64), ahm.torch.edges(maps)
+    for name in ("log", "distance", "weight", "quality", "transport"):
+        tensor, values = getattr(found, name), getattr(maps, name)
+        assert tensor.data_ptr() == values.ctypes.data and tensor.dtype in (torch.float64, torch.complex128)
+        torch.testing.assert_close(tensor.resolve_conj(), getattr(single, name).to(tensor.dtype), rtol=1e-6, atol=1e-6)
+        before = getattr(single, name).clone()
+        values[7] = 0.5
+        assert complex(tensor.resolve_conj()[7].flatten()[0]).real == 0.5
+        assert bool((getattr(single, name) == before).all())
+    with pytest.raises(ValueError, match="dtype"):
+        ahm.torch.edges(maps, torch.float16)
+
+
 def test_quality_is_that_of_the_maps(sphere):
     maps = ahm.local_maps(sphere, 0.4, quality=True)
     quality = ahm.torch.edges(maps).quality

@@ -56,6 +56,22 @@ TEST_F(LocalMapsCommand, FindsTheNeighborsOnAPlane) {
   }
 }
 
+TEST_F(LocalMapsCommand, WritesTheQualityIfRequested) {
+  run_ok("local-maps plane.xyz --k 9 -o maps.npz");
+  const auto log = array<double>("log");
+  run_ok("local-maps plane.xyz --k 9 --quality -o maps.npz");
+  const auto quality = array<double>("quality");
+  ASSERT_EQ(2 * quality.size(), log.size());
+  EXPECT_EQ(array<double>("log"), log);
+  for (const double q : quality) ASSERT_TRUE(q > 0 && q <= 1) << q;
+  // Next to the rim quality is too low for some.
+  EXPECT_GT(std::ranges::count_if(quality, [](double q) { return q > 0.99; }), 0.9 * quality.size());
+  std::string header;
+  run_ok("local-maps plane.xyz --k 9 --quality --pad --float32 -o maps.npz");
+  array<float>("quality", &header);
+  EXPECT_TRUE(has(header, "'<f4'", "'shape': (144, 9)"));
+}
+
 TEST_F(LocalMapsCommand, WarnsOfARadiusWithoutNeighbors) {
   const auto warnings = [](const std::string& options) {
     return run_ok("local-maps plane.xyz -o maps.npz " + options).err;

@@ -244,8 +244,8 @@ TEST(LocalPolarMaps, DoNotDependOnThreads) {
 
 TEST(LocalPolarMaps, OfTheNearestAreTheFirstOfALargeRadius) {
   const auto mesh = surface_of(joined(torus(1500), icosphere(1), {50, 0, 0}));
-  const auto cloud = noisy_cloud(torus(1500), 0.02);
-  for (const Surface* surface : std::initializer_list<const Surface*>{&mesh, &cloud}) {
+  const auto cloud = noisy_cloud(torus(1500), 0.02), very_noisy = noisy_cloud(torus(1500), 0.1);
+  for (const Surface* surface : std::initializer_list<const Surface*>{&mesh, &cloud, &very_noisy}) {
     const PolarMapSolver solver(*surface);
     const std::vector<Vertex> sources = some_vertices(surface->graph());
     for (const bool bound : {false, true}) {

@@ -174,6 +174,26 @@ TEST(PolarMap, IsTheExactMapWhereWindowsReach) {
   }
 }
 
+TEST(ExactMap, MayEndAtANumberOfVertices) {
+  const auto surface = surface_of(torus(900));
+  const ExactGeodesics geodesics(surface);
+  const LogMap whole = geodesics.log_map(Row(10));
+  for (const Index count : {1, 12, 60}) {
+    const LogMap some = geodesics.log_map(Row(10), {}, {.max_vertices = count});
+    EXPECT_GE(some.count(Status::ok), count);
+    EXPECT_LT(some.count(Status::ok), 2 * count + 20);
+    double farthest = 0;
+    for (Vertex v(0); v.index < some.size(); ++v.index)
+      if (some.status(v) == Status::ok) {
+        farthest = std::max(farthest, some.distance(v));
+        EXPECT_EQ(some.distance(v), whole.distance(v));
+        EXPECT_EQ(vector_at(some, v.index), vector_at(whole, v.index));
+      }
+    for (Vertex v(0); v.index < some.size(); ++v.index)  // no nearer vertex is missing
+      if (some.status(v) != Status::ok) EXPECT_GE(whole.distance(v), farthest);
+  }
+}
+
 TEST(PolarMap, IsCloseToTheExactMapWhereItsErrorEstimateIsSmall) {
   const auto surface = surface_of(torus(6000));
   const LogMap polar = PolarMapSolver(surface, {.windows = 0}).log_map(Row(100)),

@@ -30,6 +30,7 @@ constexpr const char* local_maps_footer =
     "  transport[e]  complex number: multiplies u + iv in the source's frame to give the vector in the neighbor's\n"
     "                frame; 2 x 2 matrices on surfaces that are not orientable\n"
     "  weight[e]     area of the neighbor\n"
+    "  quality[e]    with --quality: how reliable log[e] is, in (0, 1]\n"
     "With --pad the arrays have the shape sources x K instead, and mask is 1 for entries that exist.\n"
     "\n"
     "Example:\n"
@@ -44,6 +45,7 @@ struct LocalMapsOptions {
   std::string sources = "all";  ///< all, or a file of row numbers
   bool pad = false;             ///< write `k` entries per source and a mask instead of compressed rows
   bool float32 = false;
+  bool quality = false;  ///< write the quality of each vector
 };
 
 void check_options(const LocalMapsOptions& options) {
@@ -135,6 +137,7 @@ void write(const LocalMapsOptions& options, const RowLocalMaps& maps, const std:
   add("log", maps.logs, {2}, real);
   add("distance", maps.distances, {}, real);
   add("weight", maps.weights, {}, real);
+  if (options.quality) add("quality", maps.quality, {}, real);
   // Surfaces that are not orientable have 2 x 2 matrices, some of them reflections.
   add("transport", maps.transports, rotations ? Shape{} : Shape{2, 2}, rotations ? complex : real);
   file.commit();
@@ -179,6 +182,7 @@ void run(const LocalMapsOptions& options) {
   journal.start("solve");
   map_options.method = method;
   map_options.radius = options.radius;
+  map_options.quality = options.quality;
   map_options.heat = options.solve.diffusion();
   map_options.memory = options.solve.memory;
   map_options.heat.progress = journal.progress();
@@ -216,6 +220,7 @@ void offer(CLI::App& app, LocalMapsOptions& o) {
              "all (default), or a file with row numbers of INPUT, counted from 0");
   app.add_flag("--pad", o.pad, "Write K entries per source and a mask; requires --k");
   app.add_flag("--float32", o.float32, "Write numbers in single precision");
+  app.add_flag("--quality", o.quality, "Also write how reliable each vector is");
   add_method(app, o.solve, {Method::polar}, true);
   add_variant(app, o.solve);
   add_backend(app, o.input);

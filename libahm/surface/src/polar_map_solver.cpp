@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <string>
 #include <utility>
@@ -9,9 +10,11 @@
 
 #include "ahm/error.hpp"
 #include "ahm/graph/csr_graph.hpp"
+#include "ahm/maps/straight_line.hpp"
 #include "ahm/surface/exact/flat_triangles.hpp"
 #include "ahm/util/memory.hpp"
 #include "ahm/util/small_math.hpp"
+#include "ahm/util/vec.hpp"
 
 namespace ahm::detail {
 
@@ -130,27 +133,27 @@ namespace {
 /// vertices.
 constexpr Offset windows_per_vertex = 8, min_windows = Offset{1} << 17;
 
-/// Converts the result of a front over the triangles of a sheet to seeds of a front over the graph. The triangles are as noisy
-/// as the points, so the seeds are not exact. Their expected error combines the error of `other`, a front from the source
-/// without windows, with the difference to it. The difference is divided by the square root of 2, as for two equally good
-/// estimates.
-/// @param other  null: no errors
-std::vector<Wavefront::Seed> seeds_of_front(const Wavefront& front, const Wavefront* other, bool frames) {
-  std::vector<Wavefront::Seed> seeds;
-  for (const Vertex v : front.reached()) {
-    const double distance = front.distance(v);
-    const Vec2 direction = front.direction(v);
-    double error = 0;
-    if (other != nullptr) {
-      const Vec2 other_direction = other->direction(v);
-      const double share = other->distance(v) / distance;
-      const double apart =
-          std::hypot(direction[0] - share * other_direction[0], direction[1] - share * other_direction[1]);
-      error = std::hypot(apart / std::numbers::sqrt2, other->direction_error(v));
-    }
-    seeds.push_back({v, distance, direction, frames ? front.arrival(v) : Vec2{NAN, NAN}, front.nearest(v),
-                     std::isfinite(error) ? error : 0, front.is_mirrored(v)});
+/// Sets the expected errors of seeds from the triangles of a cloud. These are as noisy as the points, so the seeds are not exact.
+/// The error combines the error of `other`, a front from the source without windows, with the difference to it. The difference
+/// is divided by the square root of 2, as for two equally good estimates.
+void set_errors(std::span<Wavefront::Seed> seeds, const Wavefront& other) {
+  for (Wavefront::Seed& seed : seeds) {
+    const Vec2 other_direction = other.direction(seed.vertex);
+    const double share = other.distance(seed.vertex) / seed.distance;
+    const double apart =
+        std::hypot(seed.direction[0] - share * other_direction[0], seed.direction[1] - share * other_direction[1]);
+    const double error = std::hypot(apart / std::numbers::sqrt2, other.direction_error(seed.vertex));
+    seed.error = std::isfinite(error) ? error : 0;
   }
+}
+
+/// The polar coordinates of a front.
+/// @param arrivals  whether directions of arrival are computed; otherwise they are NaN
+std::vector<Wavefront::Seed> seeds_of_front(const Wavefront& front, bool arrivals) {
+  std::vector<Wavefront::Seed> seeds;
+  for (const Vertex v : front.reached())
+    seeds.push_back({v, front.distance(v), front.direction(v), arrivals ? front.arrival(v) : Vec2{NAN, NAN},
+                     front.nearest(v), front.direction_error(v), front.is_mirrored(v)});
   return seeds;
 }
 
@@ -191,71 +194,146 @@ class PolarMapSolver::Fronts {
   /// @param seeds   empty: the front starts at the source
   /// @param errors  whether the front has errors of directions on clouds, which takes a second front
   const Wavefront& around(const Source& source, const Seeds& seeds, const PolarMapOptions& options, bool errors) {
+    return around(source, seeds, exact_seeds(source, seeds, options, 0), options, errors);
+  }
+
+  /// Polar coordinates, as `LocalPolarCoordinates`. Where windows reach all vertices, no front is needed.
+  /// @param from  the coordinates may omit vertices whose straight line from here is longer than the horizon; none: they omit none
+  PolarNeighbors neighbors(const Source& source, const Seeds& seeds, PolarMapOptions options, Index enough,
+                           const std::optional<Vec3>& from, bool errors) {
+    ExactGeodesics::Seeds exact = exact_seeds(source, seeds, options, enough);
+    if (enough > 0 && std::ssize(exact.vertices) >= enough)
+      options.radius = std::min({options.radius, exact.horizon, radius_of(exact.vertices, enough, from)});
+    if (exact.vertices.empty() || exact.horizon < options.radius ||
+        may_reach_left_out(exact.vertices, from, options.radius)) {
+      neighbors_ = seeds_of_front(around(source, seeds, std::move(exact), options, errors), true);
+      return {neighbors_, options.radius};
+    }
+    neighbors_ = std::move(exact.vertices);
+    if (errors && solver_.triangle_graph_) {
+      front_.clear();
+      front_.add(source);
+      front_.run(options.radius, options.progress.stop);
+      set_errors(neighbors_, front_);
+      // A front stores errors in single precision, so those of local and whole maps are equal only if both are stored in one.
+      run_from(front_, source, neighbors_, false, options);
+      neighbors_ = seeds_of_front(front_, true);
+    }
+    return {neighbors_, options.radius};
+  }
+
+ private:
+  /// @param exact  the vertices that windows reach up to the radius
+  const Wavefront& around(const Source& source, const Seeds& seeds, ExactGeodesics::Seeds exact,
+                          const PolarMapOptions& options, bool errors) {
+    const double edge = longest_edge_to_left_out(exact.vertices);
+    if (edge > 0 && !std::isinf(options.radius)) {
+      // Paths to vertices without triangles may cross edges whose ends are beyond the radius.
+      PolarMapOptions farther = options;
+      farther.radius += edge;
+      exact = exact_seeds(source, seeds, farther, 0);
+    }
     front_.clear();
-    const auto exact = seeds ? exact_seeds(source.vertices().front(), seeds, options) : ExactGeodesics::Seeds{};
     if (exact.vertices.empty()) {
       front_.add(source);
       front_.run(options.radius, options.progress.stop);
       return front_;
     }
     const bool is_enough = exact.horizon >= options.radius;
-    const bool continues = !is_enough || longest_edge_to_left_out(exact.vertices) > 0;
+    const bool continues = !is_enough || edge > 0;
     if (!solver_.triangle_graph_) {
       run_from(front_, source, exact.vertices, continues, options);
       return front_;
     }
+    std::vector<Wavefront::Seed> all = std::move(exact.vertices);
+    const Index component = component_of(all.front().vertex.index);
+    if (!is_enough) {
+      if (!over_) over_.emplace(*solver_.triangle_graph_, solver_.triangle_one_rings_, true);
+      run_from(*over_, source, all, true, options);
+      all = seeds_of_front(*over_, options.frames);
+    }
     if (errors) {
       front_.add(source);
       front_.run(options.radius, options.progress.stop);
+      set_errors(all, front_);
     }
-    if (!over_) over_.emplace(*solver_.triangle_graph_, solver_.triangle_one_rings_, true);
-    run_from(*over_, source, exact.vertices, !is_enough, options);
-    const auto all = seeds_of_front(*over_, errors ? &front_ : nullptr, options.frames);
     // Vertices with triangles that windows have not reached are beyond the radius.
-    const exact::PolyhedralSurface& triangles = solver_.geodesics_->triangles().surface;
-    const Index component = triangles.component(exact.vertices.front().vertex.index);
-    const auto has_triangles = [&triangles, component](Vertex v) { return triangles.component(v.index) == component; };
+    const auto has_triangles = [this, component](Vertex v) { return component_of(v.index) == component; };
     run_from(front_, source, all, continues, options,
              is_enough ? std::function<bool(Vertex)>(has_triangles) : std::function<bool(Vertex)>());
     return front_;
   }
 
- private:
-  /// The vertices that windows reach up to the radius. Empty where windows get lost in needles, or the source is outside of the
-  /// triangles.
-  /// @param source  vertex at the source
-  ExactGeodesics::Seeds exact_seeds(Vertex source, const Seeds& seeds, const PolarMapOptions& options) {
+  /// The vertices that windows reach up to the radius, or at least `enough` of them if it is > 0. Empty without seeds, where windows
+  /// get lost in needles, and if the source is outside of the triangles.
+  ExactGeodesics::Seeds exact_seeds(const Source& source, const Seeds& seeds, const PolarMapOptions& options,
+                                    Index enough) {
+    if (!seeds) return {};
     if (!windows_) windows_.emplace(*solver_.geodesics_);
-    ExactMapOptions exact{.radius = options.radius,
-                          .max_windows = solver_.max_windows(source),
-                          .frames = options.frames || solver_.graph_->transport_layout().may_reflect(),
-                          .progress = options.progress};
+    const ExactMapOptions exact{.radius = options.radius,
+                                .max_windows = solver_.max_windows(source.vertices().front()),
+                                .max_vertices = enough,
+                                .frames = options.frames || solver_.graph_->transport_layout().may_reflect(),
+                                .progress = options.progress};
     try {
-      ExactGeodesics::Seeds found = seeds(exact, *windows_);
-      const double edge = std::isinf(options.radius) ? 0 : longest_edge_to_left_out(found.vertices);
-      if (edge == 0) return found;
-      // Paths to vertices without triangles may cross edges whose ends are beyond the radius.
-      exact.radius += edge;
       return seeds(exact, *windows_);
     } catch (const InvalidGeometry&) {
       return {};
     }
   }
 
-  /// On clouds windows cannot reach vertices without triangles, or with those of another component. The longest edge at seeds
-  /// that have such neighbors, world units; 0: there are none.
-  double longest_edge_to_left_out(std::span<const Wavefront::Seed> seeds) const {
-    if (!solver_.triangle_graph_) return 0;
-    const exact::PolyhedralSurface& triangles = solver_.geodesics_->triangles().surface;
-    double longest = 0;
+  /// A radius within which at least `count` seeds lie, also if distances are increased to the length of the straight line.
+  double radius_of(std::span<const Wavefront::Seed> seeds, Index count, const std::optional<Vec3>& from) {
+    distances_.clear();
     for (const Wavefront::Seed& seed : seeds) {
-      const Index vertex = seed.vertex.index;
-      const Star star = solver_.graph_->star(vertex);
-      if (std::ranges::all_of(star.neighbors,
-                              [&](Index j) { return triangles.component(j) == triangles.component(vertex); }))
-        continue;
-      for (std::size_t e = 0; e < star.degree(); ++e) longest = std::max(longest, length(star.log(e)));
+      const auto frame = from ? solver_.graph_->frame(seed.vertex.index) : std::optional<Frame>();
+      distances_.push_back(frame ? bounded_distance(distance(frame->origin, *from), seed.distance) : seed.distance);
     }
+    const auto last = distances_.begin() + (count - 1);
+    std::nth_element(distances_.begin(), last, distances_.end());
+    return *last * (1 + 1e-12);
+  }
+
+  Index component_of(Index vertex) const { return solver_.geodesics_->triangles().surface.component(vertex); }
+
+  /// On clouds windows cannot reach vertices without triangles, or with those of another component. Calls visit(seed, neighbor) for
+  /// such neighbors of seeds, until it returns true. @return whether it did
+  template <class Visit>
+  bool any_left_out(std::span<const Wavefront::Seed> seeds, const Visit& visit) const {
+    if (!solver_.triangle_graph_) return false;
+    return std::ranges::any_of(seeds, [&](const Wavefront::Seed& seed) {
+      const Index vertex = seed.vertex.index, component = component_of(vertex);
+      return std::ranges::any_of(solver_.graph_->star(vertex).neighbors,
+                                 [&](Index j) { return component_of(j) != component && visit(vertex, j); });
+    });
+  }
+
+  /// Whether a front may reach left out vertices whose straight line from the source is at most as long as the radius.
+  bool may_reach_left_out(std::span<const Wavefront::Seed> seeds, const std::optional<Vec3>& from,
+                          double radius) const {
+    const auto is_near = [&](Index j) {
+      const auto frame = from ? solver_.graph_->frame(j) : std::optional<Frame>();
+      return !frame || distance(frame->origin, *from) <= radius;
+    };
+    return any_left_out(seeds, [&](Index vertex, Index j) {
+      return is_near(j) || std::ranges::any_of(solver_.graph_->star(j).neighbors, [&](Index next) {
+               return component_of(next) != component_of(vertex) && is_near(next);
+             });
+    });
+  }
+
+  /// The longest edge of seeds that paths to left out neighbors may cross, world units; 0: there are no such neighbors. It ends at a common
+  /// neighbor of both.
+  double longest_edge_to_left_out(std::span<const Wavefront::Seed> seeds) const {
+    double longest = 0;
+    any_left_out(seeds, [&](Index vertex, Index j) {
+      const Star star = solver_.graph_->star(vertex), other = solver_.graph_->star(j);
+      for (std::size_t e = 0; e < star.degree(); ++e)
+        if (const Index end = star.neighbors[e];
+            end == j || std::ranges::find(other.neighbors, end) != other.neighbors.end())
+          longest = std::max(longest, length(star.log(e)));
+      return false;
+    });
     return longest * solver_.graph_->length_unit();
   }
 
@@ -277,6 +355,8 @@ class PolarMapSolver::Fronts {
   Wavefront front_;
   std::optional<Wavefront> over_;  ///< for clouds: over the selected triangles
   std::optional<ExactGeodesics::Workspace> windows_;
+  std::vector<Wavefront::Seed> neighbors_;  ///< result of `neighbors`
+  std::vector<double> distances_;
 };
 
 Offset PolarMapSolver::max_windows(Vertex source) const {
@@ -363,14 +443,16 @@ LocalMaps PolarMapSolver::local_maps(std::span<const Source> sources, const Loca
 
 LocalMaps PolarMapSolver::local_maps(std::span<const Source> sources, const LocalMapOptions& options,
                                      const std::function<Seeds(std::size_t)>& seeds) const {
-  const auto make_front = [&]() -> LocalFront {
+  const auto make_coordinates = [&]() -> LocalPolarCoordinates {
     return [&, fronts = std::make_shared<Fronts>(*this), small = small_map_options(options)](
-               std::size_t s, double radius) mutable -> const Wavefront& {
+               std::size_t s, double radius, Index enough) mutable {
       small.radius = radius;
-      return fronts->around(sources[s], seeds(s), small, options.quality);
+      const auto from =
+          options.bound_by_straight_line ? straight_line_origin(*graph_, sources[s]) : std::optional<Vec3>();
+      return fronts->neighbors(sources[s], seeds(s), small, enough, from, options.quality);
     };
   };
-  return local_polar_maps(*graph_, sources, options, make_front);
+  return local_polar_maps(*graph_, sources, options, make_coordinates);
 }
 
 Method choose_method(const TangentGraph& graph) { return graph.is_delaunay() ? Method::polar : Method::heat; }

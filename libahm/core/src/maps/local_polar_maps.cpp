@@ -2,6 +2,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <compare>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -42,23 +43,22 @@ void check_points(const TangentGraph& graph, std::span<const Source> sources, co
 class Collector {
  public:
   Collector(const TangentGraph& graph, std::span<const Source> sources, const LocalMapOptions& options,
-            LocalFront front)
-      : graph_(graph), sources_(sources), options_(options), front_(std::move(front)), ball_(graph) {}
+            LocalPolarCoordinates coordinates)
+      : graph_(graph), sources_(sources), options_(options), coordinates_(std::move(coordinates)), ball_(graph) {
+    if (options.quality) places_.emplace(static_cast<std::size_t>(graph.size()));
+  }
 
   /// Appends the entries of source s, nearest first.
   void collect(std::size_t s, LocalEntries& entries) {
-    const Wavefront& front = find(s);
-    // The front is final up to the farthest neighbor.
-    double farthest = 0;
-    for (const auto& [distance, vertex] : order_) farthest = std::max(farthest, front.distance(Vertex(vertex)));
-    for (const auto& [distance, vertex] : order_) {
-      const Vertex v(vertex);
-      if (options_.quality) entries.quality.push_back(quality(front, v, distance, farthest));
-      entries.vertices.push_back(v);
-      entries.distances.push_back(distance);
-      const Vec2 log = coordinates(front, v);
+    const std::span<const Wavefront::Seed> vertices = find(s);
+    if (options_.quality) add_quality(vertices, entries);
+    for (const Neighbor& neighbor : order_) {
+      const Wavefront::Seed& vertex = vertices[neighbor.place];
+      entries.vertices.push_back(vertex.vertex);
+      entries.distances.push_back(neighbor.distance);
+      const Vec2 log = log_of(vertex);
       entries.logs.insert(entries.logs.end(), log.begin(), log.end());
-      const std::array<double, 4> U = transport(front, sources_[s], v);
+      const std::array<double, 4> U = transport(sources_[s], vertex);
       if (graph_.transport_kind() == TransportKind::rotation2)
         entries.transports.insert(entries.transports.end(), {U[0], U[2]});
       else
@@ -67,8 +67,15 @@ class Collector {
   }
 
  private:
-  /// Finds the neighbors of source s: fills `order_`.
-  const Wavefront& find(std::size_t s) {
+  struct Neighbor {
+    double distance;
+    Index vertex;
+    std::size_t place;  ///< in the polar coordinates
+    auto operator<=>(const Neighbor&) const = default;
+  };
+
+  /// Finds the neighbors of source s: fills `order_`. @return the polar coordinates around the source
+  std::span<const Wavefront::Seed> find(std::size_t s) {
     // Distances on clouds may exceed the length of the edge path. Then the radius grows, after some steps to infinity.
     constexpr double growth = 1.3, largest_growth = 10;
     const bool by_number = options_.radius == 0;
@@ -78,76 +85,92 @@ class Collector {
       least = nearest.radius * (1 + 1e-12);
       radius = nearest.is_complete ? std::numeric_limits<double>::infinity() : least;
     }
+    Index enough = options_.k;
     while (true) {
-      const Wavefront& front = front_(s, radius);
-      order_within(front, s, radius);
-      const bool all = !by_number || std::isinf(radius) || std::ssize(order_) >= options_.k;
-      if (all) {
-        if (options_.k > 0 && std::ssize(order_) > options_.k) order_.resize(static_cast<std::size_t>(options_.k));
-        return front;
+      const PolarNeighbors around = coordinates_(s, radius, enough);
+      order_within(around.vertices, s, std::min(radius, around.horizon));
+      if (options_.k > 0 && std::ssize(order_) >= options_.k) {
+        order_.resize(static_cast<std::size_t>(options_.k));
+        return around.vertices;
       }
-      radius = radius < largest_growth * least ? growth * radius : std::numeric_limits<double>::infinity();
+      if (around.horizon < radius)
+        enough = 0;  // distances were increased to that of the straight line
+      else if (!by_number || std::isinf(radius))
+        return around.vertices;
+      else
+        radius = radius < largest_growth * least ? growth * radius : std::numeric_limits<double>::infinity();
     }
   }
 
   /// Sorts the vertices within the radius by distance.
-  void order_within(const Wavefront& front, std::size_t s, double radius) {
+  void order_within(std::span<const Wavefront::Seed> vertices, std::size_t s, double radius) {
     const auto start =
         options_.bound_by_straight_line ? straight_line_origin(graph_, sources_[s]) : std::optional<Vec3>();
     order_.clear();
-    for (const Vertex v : front.reached()) {
-      double distance = front.distance(v);
+    for (std::size_t place = 0; place < vertices.size(); ++place) {
+      const Wavefront::Seed& vertex = vertices[place];
+      double distance = vertex.distance;
       if (!(distance <= radius)) continue;
       if (start)
-        if (const auto frame = graph_.frame(v.index))
+        if (const auto frame = graph_.frame(vertex.vertex.index))
           distance = bounded_distance(ahm::distance(frame->origin, *start), distance);
-      const Vec2 log = coordinates(front, v);
-      if (distance <= radius && std::isfinite(log[0]) && std::isfinite(log[1])) order_.emplace_back(distance, v.index);
+      const Vec2 log = log_of(vertex);
+      if (distance <= radius && std::isfinite(log[0]) && std::isfinite(log[1]))
+        order_.push_back({distance, vertex.vertex.index, place});
     }
     std::sort(order_.begin(), order_.end());
   }
 
-  /// @param farthest  the map contains the vertices up to this distance on the front
-  double quality(const Wavefront& front, Vertex v, double distance, double farthest) const {
-    const Vec2 here = coordinates(front, v);
-    const auto length_in_map = [&](Index j) {
-      return front.distance(Vertex(j)) <= farthest ? length(coordinates(front, Vertex(j)) - here)
-                                                   : std::numeric_limits<double>::quiet_NaN();
-    };
-    const double error = distance > 0 ? distance * front.direction_error(v) : 0;
+  /// Adds the quality of the neighbors in `order_`. The map contains the vertices up to the farthest of them.
+  void add_quality(std::span<const Wavefront::Seed> vertices, LocalEntries& entries) {
+    double farthest = 0;
+    for (const Neighbor& neighbor : order_) farthest = std::max(farthest, vertices[neighbor.place].distance);
+    for (std::size_t place = 0; place < vertices.size(); ++place)
+      if (vertices[place].distance <= farthest)
+        (*places_)[vertices[place].vertex.index] = static_cast<Index>(place + 1);
     const double h = graph_.length_unit() * graph_.mean_edge_length();
-    return quality_of(graph_, v, std::isfinite(error) ? error : 0, jump_at(graph_, v.index, length_in_map), distance,
-                      h);
+    for (const Neighbor& neighbor : order_) {
+      const Wavefront::Seed& vertex = vertices[neighbor.place];
+      const Vec2 here = log_of(vertex);
+      const auto length_in_map = [&](Index j) {
+        const Index place = (*places_)[j];
+        return place > 0 ? length(log_of(vertices[to_size(place - 1)]) - here)
+                         : std::numeric_limits<double>::quiet_NaN();
+      };
+      const double error = neighbor.distance > 0 ? neighbor.distance * vertex.error : 0;
+      entries.quality.push_back(quality_of(graph_, vertex.vertex, std::isfinite(error) ? error : 0,
+                                           jump_at(graph_, vertex.vertex.index, length_in_map), neighbor.distance, h));
+    }
+    for (const Wavefront::Seed& vertex : vertices) (*places_)[vertex.vertex.index] = 0;
   }
 
-  static Vec2 coordinates(const Wavefront& front, Vertex v) {
-    const double distance = front.distance(v);
-    return distance > 0 ? distance * front.direction(v) : Vec2{};
+  static Vec2 log_of(const Wavefront::Seed& vertex) {
+    return vertex.distance > 0 ? vertex.distance * vertex.direction : Vec2{};
   }
 
   /// The source's axes at a vertex, as `polar_map`.
-  static std::array<double, 4> transport(const Wavefront& front, const Source& source, Vertex v) {
-    const Vec2 departure = front.direction(v), arrival = front.arrival(v);
-    if (!std::isnan(arrival[0]) && !std::isnan(departure[0]))
-      return carried_axes(departure, arrival, front.is_mirrored(v));
+  static std::array<double, 4> transport(const Source& source, const Wavefront::Seed& vertex) {
+    if (!std::isnan(vertex.arrival[0]) && !std::isnan(vertex.direction[0]))
+      return carried_axes(vertex.direction, vertex.arrival, vertex.mirrored);
     std::array<double, 4> axes{1, 0, 0, 1};
     for (std::size_t k = 0; k < source.vertices().size() && !source.axes().empty(); ++k)
-      if (source.vertices()[k] == v) std::ranges::copy(source.axes().subspan(4 * k, 4), axes.begin());
+      if (source.vertices()[k] == vertex.vertex) std::ranges::copy(source.axes().subspan(4 * k, 4), axes.begin());
     return axes;
   }
 
   const TangentGraph& graph_;
   std::span<const Source> sources_;
   const LocalMapOptions& options_;
-  LocalFront front_;
+  LocalPolarCoordinates coordinates_;
   Ball ball_;
-  std::vector<std::pair<double, Index>> order_;  ///< distance and number of the neighbors, nearest first
+  std::vector<Neighbor> order_;               ///< the neighbors, nearest first
+  std::optional<SparseArray<Index>> places_;  ///< 1 + place of each vertex in the polar coordinates; 0: not in the map
 };
 
 }  // namespace
 
 LocalMaps local_polar_maps(const TangentGraph& graph, std::span<const Source> sources, const LocalMapOptions& options,
-                           const std::function<LocalFront()>& make_front) {
+                           const std::function<LocalPolarCoordinates()>& make_coordinates) {
   return detail::with_memory_check("computing local maps", [&] {
     check_points(graph, sources, options);
     Ball ball(graph);
@@ -168,7 +191,7 @@ LocalMaps local_polar_maps(const TangentGraph& graph, std::span<const Source> so
         const detail::Lock lock(mutex);
         if (!idle.empty()) collector = std::move(idle.back()), idle.pop_back();
       }
-      if (!collector) collector = std::make_unique<Collector>(graph, sources, options, make_front());
+      if (!collector) collector = std::make_unique<Collector>(graph, sources, options, make_coordinates());
       LocalEntries& entries = chunks[static_cast<std::size_t>(begin / chunk)];
       for (Offset s = begin; s < end; ++s) {
         const std::size_t before = entries.vertices.size();

@@ -324,6 +324,7 @@ exact::ExactOptions ExactGeodesics::window_options(const ExactMapOptions& option
   exact::ExactOptions result;
   result.radius = options.radius / flat_.length_unit;
   result.max_windows = options.max_windows;
+  result.max_vertices = options.max_vertices;
   result.progress = options.progress;
   return result;
 }

@@ -39,6 +39,7 @@ Propagation::Propagation(const PolyhedralSurface& surface, const ExactOptions& o
       horizon_(options.radius),
       only_targets_(options.only_targets),
       max_windows_(options.max_windows),
+      max_vertices_(options.max_vertices),
       distance_(static_cast<std::size_t>(surface.vertex_count()), infinity),
       target_distance_(targets.size(), infinity),
       reached_(distance_.size() + targets.size()),
@@ -63,8 +64,10 @@ void Propagation::place_targets(std::span<const MeshPoint> targets) {
 // ---------------------------------------------------------------------------------------------- sources
 
 void Propagation::add_sources(std::span<const MeshPoint> points) {
-  // Components without a source do not determine the buckets. In buckets that are too wide the order of windows is lost.
-  double edge = infinity;
+  // Components without a source do not determine the buckets. In buckets that are too wide the order of windows is lost. The sides
+  // around the source may be much shorter than the mean; a small horizon is a few of them.
+  constexpr double sides_to_horizon = 2;
+  double edge = horizon_ / sides_to_horizon;
   for (const MeshPoint& point : points)
     edge = std::min(edge, surface_.component_details(surface_.component(point)).mean_length);
   windows_.clear(bucket_width * edge);
@@ -323,6 +326,7 @@ void Propagation::cross_face(const Window& w) {
     // Only one window continues on both sides of the apex: one angle, one split [CH90].
     ApexArrival& best = apex_arrivals_[w.half];
     if (to_apex < best.distance) {
+      if (best.distance == infinity) crossed_.push_back(w.half);
       best = {to_apex, crossing};
       if (!apex_arrival_origins_.empty()) apex_arrival_origins_[w.half] = w.from;
     } else if (to_apex > best.distance * slack && std::abs(crossing - best.crossing) > same_ray * r.length) {
@@ -393,6 +397,10 @@ void Propagation::run(const Progress& progress) {
     if (windows_.key() > horizon_) break;
     if (only_targets_) horizon_ = std::min(horizon_, farthest_target());
     if (windows_.key() > horizon_) break;
+    if (has_enough_within(windows_.key())) {
+      horizon_ = windows_.key();
+      break;
+    }
     if (max_windows_ > 0 && window_count_ >= max_windows_) {
       horizon_ = windows_.key();
       break;
@@ -409,6 +417,11 @@ void Propagation::run(const Progress& progress) {
   }
   progress.step("windows", 1);
   copy_vertex_targets();
+}
+
+bool Propagation::has_enough_within(double distance) const {
+  if (max_vertices_ == 0 || std::ssize(touched_) < max_vertices_) return false;
+  return std::ranges::count_if(touched_, [&](Index v) { return distance_[v] <= distance; }) >= max_vertices_;
 }
 
 void Propagation::check_count() const {
@@ -449,17 +462,16 @@ void Propagation::check_reached() const {
 }
 
 void Propagation::clear(const ExactOptions& options) {
-  for (const Index vertex : touched_) {
-    distance_[vertex] = infinity;
-    // The half-edges whose apex is the vertex.
-    for_each_corner(vertex, [&](Corner c) { apex_arrivals_[next(c.half)].distance = infinity; });
-  }
+  for (const Index vertex : touched_) distance_[vertex] = infinity;
+  for (const Half half : crossed_) apex_arrivals_[half].distance = infinity;
   touched_.clear();
+  crossed_.clear();
   origins_.clear();
   sources_ = 0;
   window_count_ = 0;
   horizon_ = options.radius;
   max_windows_ = options.max_windows;
+  max_vertices_ = options.max_vertices;
 }
 
 PropagationResult Propagation::found() && {
@@ -475,7 +487,8 @@ PropagationResult Propagation::found() && {
 std::size_t Propagation::bytes() const {
   return distance_.capacity() * sizeof(double) + reached_.capacity() * sizeof(ArrivalRecord) +
          origins_.capacity() * sizeof(Origin) + targets_.capacity() * sizeof(Vec2) + windows_.bytes() + bends_.bytes() +
-         apex_arrivals_.capacity() * sizeof(ApexArrival) + apex_arrival_origins_.capacity() * sizeof(Place);
+         apex_arrivals_.capacity() * sizeof(ApexArrival) + crossed_.capacity() * sizeof(Half) +
+         apex_arrival_origins_.capacity() * sizeof(Place);
 }
 
 namespace {

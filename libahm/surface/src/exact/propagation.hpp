@@ -251,7 +251,7 @@ class Propagation {
   /// Returns the results and ends the propagation.
   PropagationResult found() &&;
   /// Removes the sources and results. The time depends on the number of vertices reached. Without targets only.
-  /// @param options  radius and max_windows are used
+  /// @param options  radius, max_windows and max_vertices are used
   void clear(const ExactOptions& options);
 
  private:
@@ -313,6 +313,8 @@ class Propagation {
   /// Checks the number of windows.
   /// @throws InvalidGeometry where windows run in circles
   void check_count() const;
+  /// Whether `max_vertices_` vertices have their final distance when all paths up to this distance are known.
+  bool has_enough_within(double distance) const;
   double fraction() const { return static_cast<double>(touched_.size()) / static_cast<double>(distance_.size()); }
   template <class Visit>
   void for_each_corner(Index vertex, const Visit& visit) const;
@@ -322,6 +324,7 @@ class Propagation {
   double horizon_;
   bool only_targets_;
   Offset max_windows_;  ///< maximum number of windows; 0: no limit
+  Index max_vertices_;  ///< maximum number of vertices within the completed distance; 0: no limit
   std::size_t sources_ = 0;
   std::vector<double> distance_, target_distance_;
   std::vector<ArrivalRecord> reached_;
@@ -333,6 +336,7 @@ class Propagation {
   std::vector<Index> touched_;           ///< vertices with a distance
   Offset window_count_ = 0;
   std::vector<ApexArrival> apex_arrivals_;   ///< best window of each half-edge
+  std::vector<Half> crossed_;                ///< half-edges with such a window
   std::vector<Place> apex_arrival_origins_;  ///< origin of that window; empty: not needed
   BucketQueue<Window> windows_;
   BucketQueue<Bend> bends_;

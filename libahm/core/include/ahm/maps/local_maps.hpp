@@ -101,16 +101,21 @@ LocalMaps local_maps(const TangentGraph& graph, std::span<const Vertex> vertices
 /// Local maps of every vertex.
 LocalMaps local_maps(const TangentGraph& graph, const LocalMapOptions& options);
 
-/// Returns a front with directions whose results around source s are final up to a radius, world units. The front is valid until the
-/// next call.
-using LocalFront = std::function<const Wavefront&(std::size_t s, double radius)>;
+/// Geodesic polar coordinates of the vertices around a source.
+struct PolarNeighbors {
+  std::span<const Wavefront::Seed> vertices;
+  double horizon;  ///< `vertices` contains all vertices up to this distance, world units
+};
+/// Computes polar coordinates around source s up to a radius, world units. The horizon may be smaller if at least `enough` vertices lie
+/// within it (0: it may not). The result is valid until the next call.
+using LocalPolarCoordinates = std::function<PolarNeighbors(std::size_t s, double radius, Index enough)>;
 
-/// Local maps in geodesic polar coordinates, d = 2: each source has a small front. Nothing is factored. Time and memory depend on the
-/// number of entries, not on the size of the graph.
-/// @param sources     the sources of the fronts; no curves
-/// @param make_front  makes the fronts of one thread
+/// Local maps from geodesic polar coordinates, d = 2. Nothing is factored. Time and memory depend on the number of entries, not on the size
+/// of the graph.
+/// @param sources           the sources of the coordinates; no curves
+/// @param make_coordinates  makes the coordinates of one thread
 /// @throws InvalidArgument (options, source, dimension), ResourceExhausted, Cancelled
 LocalMaps local_polar_maps(const TangentGraph& graph, std::span<const Source> sources, const LocalMapOptions& options,
-                           const std::function<LocalFront()>& make_front);
+                           const std::function<LocalPolarCoordinates()>& make_coordinates);
 
 }  // namespace ahm

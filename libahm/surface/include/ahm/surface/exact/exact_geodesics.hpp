@@ -38,6 +38,7 @@ struct ExactMapOptions {
   /// Vertices farther than this get `Status::beyond_radius`, and the propagation ends there. World units; > 0.
   double radius = std::numeric_limits<double>::infinity();
   Offset max_windows = 0;  ///< as in `exact::ExactOptions`
+  Index max_vertices = 0;  ///< as in `exact::ExactOptions`
   bool frames = false;     ///< fill `LogMap::frames`
   Progress progress;
   unsigned threads = 0;  ///< threads of functions that compute several maps; 0: one per core
@@ -103,8 +104,8 @@ class ExactGeodesics {
   /// Polar coordinates of the vertices around a source.
   struct Seeds {
     std::vector<Wavefront::Seed> vertices;
-    /// The vertices contain all connected ones up to this distance, world units: the radius, or less if the windows were not
-    /// enough.
+    /// The vertices contain all connected ones up to this distance, world units: the radius, or less if `max_windows` or
+    /// `max_vertices` ended the propagation.
     double horizon = 0;
   };
   /// The polar coordinates of `log_map`, for the vertices that windows reach within the options. A front can continue from

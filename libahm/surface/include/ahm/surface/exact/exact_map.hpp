@@ -23,6 +23,8 @@ struct ExactOptions {
   /// The propagation also ends after this many windows; 0: no limit. Vertices and targets beyond the completed distance get
   /// `Status::beyond_radius`. That distance does not depend on the machine.
   Offset max_windows = 0;
+  /// The propagation also ends as soon as this many vertices lie within the completed distance; 0: no limit.
+  Index max_vertices = 0;
   /// Points for which distance and direction are computed, in addition to the vertices.
   std::vector<MeshPoint> targets;
   /// End when the distances of all targets are final. Vertices beyond the farthest target get `Status::beyond_radius`.
