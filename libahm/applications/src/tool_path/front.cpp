@@ -50,6 +50,12 @@ Half corner_in(const FineDomain& domain, Index point, Index coarse_face) {
 
 }  // namespace
 
+exact::GeodesicPath PathDomain::path(const MeshPoint& from, const MeshPoint& to) const {
+  const Vec3 end = mesh.position(to);
+  return exact::locally_shortest_path(surface, from, to,
+                                      [&](Vertex v) { return distance(mesh.points[to_size(v.index)], end); });
+}
+
 MeshPoint FineDomain::in_coarse(const MeshPoint& point) const {
   return placed(coarse.mesh, parent[to_size(point.face)], mesh.position(point));
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "ahm/progress.hpp"
+#include "ahm/surface/exact/geodesic_path.hpp"
 #include "tool_path/fine_mesh.hpp"
 
 namespace ahm {
@@ -17,6 +18,9 @@ struct PathDomain {
   explicit PathDomain(FaceMesh triangles) : mesh(std::move(triangles)), surface(polyhedral(mesh)) {}
   PathDomain(const PathDomain&) = delete;
   PathDomain& operator=(const PathDomain&) = delete;
+
+  /// As `exact::locally_shortest_path`.
+  exact::GeodesicPath path(const exact::MeshPoint& from, const exact::MeshPoint& to) const;
 
   FaceMesh mesh;
   exact::PolyhedralSurface surface;

@@ -377,8 +377,7 @@ MeshCurve joined_curve(const PathDomain& domain, std::span<const MeshPoint> poin
   curve.closed = closed;
   const std::size_t legs = closed ? points.size() : points.size() - 1;
   for (std::size_t k = 0; k < legs; ++k) {
-    const exact::GeodesicPath leg =
-        exact::locally_shortest_path(domain.surface, points[k], points[(k + 1) % points.size()]);
+    const exact::GeodesicPath leg = domain.path(points[k], points[(k + 1) % points.size()]);
     if (leg.status != Status::ok)
       throw InvalidArgument("seed_disconnected", "the surface does not connect the points of the seed curve",
                             "use points of one component");

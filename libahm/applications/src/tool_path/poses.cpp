@@ -247,7 +247,7 @@ class Linker {
     if (domain_.surface.component(domain_.mesh.faces[to_size(from.point.face)][0]) !=
         domain_.surface.component(domain_.mesh.faces[to_size(to.point.face)][0]))
       return {};
-    const exact::GeodesicPath path = exact::locally_shortest_path(domain_.surface, from.point, to.point);
+    const exact::GeodesicPath path = domain_.path(from.point, to.point);
     if (path.status != Status::ok || path.length > longest) return {};
     Track track{from};
     for (std::size_t k = 1; k + 1 < path.points.size(); ++k) append(path.points[k], track);
