@@ -607,6 +607,44 @@ TEST(ToolPath, CornersThatCoincideAreNoTriangles) {
   EXPECT_EQ(path.uncovered_components, 0);
 }
 
+TEST(ToolPath, FacingIncludesBothEndsOfItsRange) {
+  // A tilted rectangle: the angle to its normal is 0 or pi, up to rounding, for directions of any length.
+  for (const Vec3& normal : {Vec3{0.9, 2.1, -3}, Vec3{0.33, 0.77, -1.1}, Vec3{-0.3, -0.7, 1}}) {
+    const Vec3 x = normalized(ahm::cross(normal, {0, 0, 1})), y = normalized(ahm::cross(normal, x));
+    Mesh mesh = holed_plate();
+    for (Vec3& p : mesh.positions) p = p[0] * x + p[1] * y;
+    const auto surface = surface_of(mesh);
+    const double area = tool_path_measures(surface, tool_path(surface, {.spacing = 0.5})).area;
+    for (const double side : {1.0, -1.0})
+      for (const double angle : {side > 0 ? 0.0 : std::numbers::pi, std::numbers::pi}) {
+        const ToolPathRegion region{.facing = ToolPathRegion::Facing{side * normal, angle}};
+        const ToolPath path = tool_path(surface, {.spacing = 0.5, .region = region});
+        EXPECT_NEAR(tool_path_measures(surface, path, region).area, area, 1e-9);
+      }
+  }
+}
+
+TEST(ToolPath, OfALineEndsAtAGapOfTheRegion) {
+  const auto surface = surface_of(holed_plate());
+  ToolPathRegion region{.rows = std::vector<bool>(to_size(surface.rows().row_count()), true)};
+  for (std::size_t r = 0; r < region.rows.size(); ++r) {
+    const double x = surface.positions()[r][0];
+    region.rows[r] = x < 2.95 || x > 3.25;
+  }
+  const ToolPath path =
+      tool_path(surface, {.spacing = 0.3, .seed = LineSeed{Vec3{0.5, 0.3, 0}, {1, 0, 0}}, .region = region});
+  EXPECT_EQ(path.uncovered_components, 1);
+  for (const ToolPose& pose : path.poses) EXPECT_LT(pose.position[0], 2.95);
+}
+
+TEST(ToolPath, OfASmallDiscNeedsNothingElseOfTheSurface) {
+  const auto surface = surface_of(split_icosphere(40962));
+  expect_error<ResourceExhausted>([&] { tool_path(surface, {.spacing = 3e-4}); }, "more than 2^26 triangles");
+  const ToolPathRegion region{.disc = ToolPathRegion::Disc{Row{0}, 0.003}};
+  const ToolPath path = tool_path(surface, {.spacing = 3e-4, .region = region});
+  EXPECT_NEAR(tool_path_measures(surface, path, region).area, std::numbers::pi * 9e-6, 2e-6);
+}
+
 TEST(ToolPath, RejectsWhatCannotBeCovered) {
   const auto surface = surface_of(icosphere(4));
   const auto refuses = [&](ToolPathOptions options, const std::string& text) {

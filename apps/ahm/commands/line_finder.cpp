@@ -125,9 +125,14 @@ SurfacePoint point_on_surface(const Input& input, const SourceSpec& spec, const 
   return point_of(input, spec);
 }
 
-Vec3 vector_of(const Direction& direction, const Input& input, const SurfacePoint& point) {
-  if (const auto* angle = std::get_if<double>(&direction)) return input.surface().direction(point, *angle);
-  return std::get<Vec3>(direction);
+Vec3 vector_of(const Direction& direction, const Input& input, const SurfacePoint& point, const std::string& option) {
+  const auto* angle = std::get_if<double>(&direction);
+  if (angle == nullptr) return std::get<Vec3>(direction);
+  try {
+    return input.surface().direction(point, *angle);
+  } catch (const InvalidArgument& e) {
+    throw InvalidArgument(option + ": " + e.what());
+  }
 }
 
 }  // namespace ahm::app

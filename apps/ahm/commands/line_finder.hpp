@@ -66,7 +66,9 @@ void run_polyline(const std::string& name, const InputOptions& options, const Ou
 /// @throws InvalidArgument
 SurfacePoint point_on_surface(const Input& input, const SourceSpec& spec, const std::string& option);
 
-/// A direction at a point as a vector in space. @throws InvalidArgument (an angle at a point without a u axis)
-Vec3 vector_of(const Direction& direction, const Input& input, const SurfacePoint& point);
+/// A direction at a point as a vector in space.
+/// @param option  name of the option of the point, for messages
+/// @throws InvalidArgument (an angle at a point without a u axis)
+Vec3 vector_of(const Direction& direction, const Input& input, const SurfacePoint& point, const std::string& option);
 
 }  // namespace ahm::app

@@ -60,7 +60,7 @@ std::vector<LineRequest> read_lines(const std::string& file) {
 
 FoundLine trace(const Input& input, const LineFinder& finder, const SurfacePoint& from, const LineRequest& line,
                 const char* option) {
-  const Vec3 direction = vector_of(line.direction, input, from);
+  const Vec3 direction = vector_of(line.direction, input, from, option);
   try {
     return finder.trace(from, direction, line.length);
   } catch (const InvalidArgument& e) {

@@ -82,7 +82,7 @@ std::string uncovered_rows(const std::vector<RowCoverage>& rows) {
 constexpr double long_side = 10;  ///< times the median side
 
 /// Share of the area of a cloud in triangles with long sides: between outliers, across holes, where points are sparse.
-double long_triangles(const Surface& surface) {
+double share_of_long_triangles(const Surface& surface) {
   const exact::PolyhedralSurface flat = surface.flat_approximation().surface;
   std::vector<double> sides;
   for (Index half = 0; half < 3 * flat.face_count(); ++half) sides.push_back(flat.record(half).length);
@@ -102,10 +102,11 @@ double long_triangles(const Surface& surface) {
 /// Warns if much of the area of a cloud may be no surface.
 void comment_on_long_triangles(const Input& input, Journal& journal) {
   if (input.surface().faces().size() > 0) return;
-  if (const double share = long_triangles(input.surface()); share > 0.02)
+  if (const double share = share_of_long_triangles(input.surface()); share > 0.02)
     journal.add_warning(fmt::format(
         "{:.1f} % of the area is in triangles with sides longer than {:g} times the median: between outliers, across "
-        "holes, or where points are sparse; the path covers them, too. Remove outliers (--outliers), or cover a region",
+        "holes, or where points are sparse; a path over everything covers them. Remove outliers (--outliers), or cover "
+        "a region",
         100 * share, long_side));
 }
 
@@ -127,9 +128,8 @@ std::vector<Vec3> curve_of(const Input& input, const std::vector<SourceSpec>& sp
   return points;
 }
 
-/// The point of a SPEC. The library checks the distance of positions from the surface.
-CurvePoint curve_point(const Input& input, const SourceSpec& spec, const std::string& option) {
-  const SurfacePoint point = point_on_surface(input, spec, option);
+/// The point of a SPEC, or its position: the library checks the distance of positions from the surface.
+CurvePoint curve_point(const SurfacePoint& point, const SourceSpec& spec) {
   if (const auto* given = std::get_if<SourcePosition>(&spec)) return given->position;
   return point;
 }
@@ -137,9 +137,10 @@ CurvePoint curve_point(const Input& input, const SourceSpec& spec, const std::st
 ToolPathSeed seed_of(const WholeOptions& options, const Input& input) {
   if (options.from_boundary) return BoundarySeed{};
   if (const auto& p = options.plane; !p.empty()) return PlaneSeed{{p[0], p[1], p[2]}, {p[3], p[4], p[5]}};
-  if (options.line)
-    return LineSeed{curve_point(input, *options.line, "--seed-line"),
-                    vector_of(*options.direction, input, point_on_surface(input, *options.line, "--seed-line"))};
+  if (options.line) {
+    const SurfacePoint point = point_on_surface(input, *options.line, "--seed-line");
+    return LineSeed{curve_point(point, *options.line), vector_of(*options.direction, input, point, "--seed-line")};
+  }
   if (options.curve.empty()) return AutomaticSeed{};
   return CurveSeed{curve_of(input, options.curve, "--seed-curve"), options.closed};
 }
@@ -245,9 +246,9 @@ void offer_whole(CLI::App& app, WholeOptions& o) {
     return angle;
   };
   add("--max-angle", o.max_angle, half_turn, "DEG",
-      "Largest angle between the normal of the surface and --facing, 0 to 180 (default 45). 0,0,1 with 90 covers all "
-      "that "
-      "is\nnot turned down")
+      "Largest angle between the normal of the surface and --facing, 0 to 180 (default 45).\n0,0,1 with 90 covers all "
+      "that is "
+      "not turned down")
       ->needs(facing);
   add("--inside", o.inside, parse_sources, "POINTS",
       "Cover only what the closed curve through points encloses: all parts but the largest into which it divides the\n"
@@ -301,7 +302,7 @@ void run_whole(const InputOptions& input_options, const OutputOptions& output, c
   o.seed = seed_of(options, input);
   o.progress = journal.progress();
   o.threads = input_options.threads;
-  if (source) o.region.disc = {curve_point(input, *source, "--source"), radius};
+  if (source) o.region.disc = {curve_point(point_on_surface(input, *source, "--source"), *source), radius};
   if (!options.mask.empty()) o.region.rows = mask_of(input.geometry, options.mask);
   if (options.facing) o.region.facing = {*options.facing, options.max_angle};
   if (!options.inside.empty()) o.region.enclosures.push_back({curve_of(input, options.inside, "--inside")});
@@ -316,8 +317,7 @@ void run_whole(const InputOptions& input_options, const OutputOptions& output, c
         path.uncovered_components == 1 ? "1 component is" : fmt::format("{} components are", path.uncovered_components),
         path.uncovered_components == 1 ? "it" : "them"));
   if (path.missing_links > 0)
-    journal.add_warning(
-        fmt::format("links without a free path at the clearance: {}; raise or lower --clearance", path.missing_links));
+    journal.add_warning(fmt::format("links without a free path: {}; raise or lower --clearance", path.missing_links));
   if (o.spiral && std::ranges::count(path.passes, PassOrigin::spiral, &ToolPass::origin) == 0)
     journal.add_warning("no spiral: nowhere are three or more closed passes around each other; try another seed");
   if (measures.covered < 0.99 || measures.largest_gap > 1.25)

@@ -530,7 +530,7 @@ struct Session::Impl {
                       {"command", command(options, "coverage", words, {})}});
   }
 
-  std::vector<Isoline> lines_of(const Request& request) const {
+  std::vector<Isoline> isolines_of(const Request& request) const {
     constexpr std::size_t most_levels = 1000;
     const auto values = io::column(geometry, request.word("column", io::column_names(geometry)));
     const std::vector<double> levels = level_multiples(*values, request.positive("every"));
@@ -541,8 +541,8 @@ struct Session::Impl {
   }
 
   Answer answer_isolines(const Request& request) {
-    channels.begin(request.client(), Channels::Kind::coverage, request.number());
-    const std::vector<Isoline> lines = lines_of(request);
+    const StopToken stop = channels.begin(request.client(), Channels::Kind::coverage, request.number());
+    const std::vector<Isoline> lines = in_turn(stop, [&] { return isolines_of(request); });
     json points = json::array(), pieces = json::array();
     double length = 0;
     for (const Isoline& line : lines) {
@@ -604,7 +604,7 @@ struct Session::Impl {
       if (what == "path")
         return options.write_path(file, path({point_in(request, "from"), point_in(request, "to")}, stop).points);
       if (what == "whole") return options.write_whole(file, whole_path(request, stop));
-      if (what == "isolines") return options.write_isolines(file, lines_of(request));
+      if (what == "isolines") return options.write_isolines(file, isolines_of(request));
       options.write_coverage(file, tool_path(point_in(request, "source"), request.coverage(),
                                              of_patch(request.settings(options.settings)), stop));
     };

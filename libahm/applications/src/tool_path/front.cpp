@@ -17,7 +17,7 @@ using exact::MeshPoint;
 Vec3 corner_position(const FaceMesh& mesh, Half h) { return mesh.points[to_size(mesh.tail(h))]; }
 
 /// A position in the plane of a face, as a point of the face. Rounding errors outside of it are cut off.
-MeshPoint placed(const FaceMesh& mesh, Index face, const Vec3& position) {
+MeshPoint point_in_face(const FaceMesh& mesh, Index face, const Vec3& position) {
   const Vec3 a = corner_position(mesh, 3 * face), ab = corner_position(mesh, 3 * face + 1) - a,
              ac = corner_position(mesh, 3 * face + 2) - a, ap = position - a, normal = cross(ab, ac);
   const double area = dot(normal, normal), v = std::max(0.0, dot(cross(ap, ac), normal) / area),
@@ -57,7 +57,7 @@ exact::GeodesicPath PathDomain::path(const MeshPoint& from, const MeshPoint& to)
 }
 
 MeshPoint FineDomain::in_coarse(const MeshPoint& point) const {
-  return placed(coarse.mesh, parent[to_size(point.face)], mesh.position(point));
+  return point_in_face(coarse.mesh, parent[to_size(point.face)], mesh.position(point));
 }
 
 Front front(const FineDomain& domain, const std::vector<MeshPoint>& sources, double radius, const Progress& progress) {
@@ -68,7 +68,7 @@ Front front(const FineDomain& domain, const std::vector<MeshPoint>& sources, dou
   options.progress = progress;
   for (std::size_t p = vertices; p < points; ++p) {
     const Half corner = domain.surface.first_corner(static_cast<Index>(p)).half;
-    options.targets.push_back(placed(coarse.mesh, domain.parent[to_size(corner / 3)], domain.mesh.points[p]));
+    options.targets.push_back(point_in_face(coarse.mesh, domain.parent[to_size(corner / 3)], domain.mesh.points[p]));
   }
   std::vector<MeshPoint> coarse_sources;
   for (const MeshPoint& source : sources) coarse_sources.push_back(domain.in_coarse(source));

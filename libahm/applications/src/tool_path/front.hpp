@@ -2,6 +2,7 @@
 /// The domains of tool paths, and distances from curves on them. Lengths are in spacings.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "ahm/progress.hpp"

@@ -116,7 +116,7 @@ double double_share(const std::vector<PassPoint>& points) {
 
 /// The coverage of all rows. Of several vertices of a row, the one that is covered best counts.
 /// @param of_points  coverage of the points of the mesh of the region
-std::vector<RowCoverage> coverage_of_rows(const Surface& surface, const FaceMesh& region_mesh, bool is_part,
+std::vector<RowCoverage> coverage_of_rows(const Surface& surface, const FaceMesh& region_mesh,
                                           const std::vector<RowCoverage>& of_points) {
   std::vector<RowCoverage> of_vertices(to_size(surface.graph().size()), RowCoverage::no_triangle);
   const auto assign = [&](const FaceMesh& mesh, const auto& coverage) {
@@ -126,7 +126,7 @@ std::vector<RowCoverage> coverage_of_rows(const Surface& surface, const FaceMesh
       best = std::min(best, coverage(p));
     }
   };
-  if (is_part) assign(face_mesh(surface), [](std::size_t) { return RowCoverage::outside_region; });
+  assign(face_mesh(surface), [](std::size_t) { return RowCoverage::outside_region; });
   assign(region_mesh, [&](std::size_t p) { return of_points[p]; });
   std::vector<RowCoverage> result;
   for (Index r = 0; r < surface.rows().row_count(); ++r) {
@@ -135,10 +135,6 @@ std::vector<RowCoverage> coverage_of_rows(const Surface& surface, const FaceMesh
     result.push_back(best);
   }
   return result;
-}
-
-bool is_everything(const ToolPathRegion& region) {
-  return region.rows.empty() && !region.facing && !region.disc && region.enclosures.empty();
 }
 
 }  // namespace
@@ -168,7 +164,7 @@ ToolPathMeasures tool_path_measures(const Surface& surface, const ToolPath& path
   std::vector<RowCoverage> of_points(domain.mesh.points.size(), RowCoverage::no_pass);
   if (sources.empty()) {
     result.largest_gap = farthest;
-    result.rows = coverage_of_rows(surface, domain.mesh, !is_everything(region), of_points);
+    result.rows = coverage_of_rows(surface, domain.mesh, of_points);
     return result;
   }
   std::vector<bool> has_pass(domain.mesh.points.size(), false);  // by number of the component
@@ -189,7 +185,7 @@ ToolPathMeasures tool_path_measures(const Surface& surface, const ToolPath& path
   }
   result.covered = map.targets() > 0 ? static_cast<double>(covered) / static_cast<double>(map.targets()) : 0;
   result.double_covered = double_share(points);
-  result.rows = coverage_of_rows(surface, domain.mesh, !is_everything(region), of_points);
+  result.rows = coverage_of_rows(surface, domain.mesh, of_points);
   return result;
 }
 

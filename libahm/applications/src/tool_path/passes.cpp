@@ -263,7 +263,8 @@ void add_sources(const FaceMesh& mesh, const MeshCurve& curve, double step, std:
     const MeshPoint a = in_face(mesh, curve.points[k], curve.faces[k]),
                     b = in_face(mesh, after(curve, k), curve.faces[k]);
     const double ahead = distance(mesh.position(a), mesh.position(b));
-    for (; next <= walked + ahead; next += piece) sources.push_back(between(a, b, (next - walked) / ahead));
+    for (; next <= walked + ahead; next += piece)
+      sources.push_back(between(a, b, std::min(1.0, (next - walked) / ahead)));
     walked += ahead;
   }
 }
@@ -378,9 +379,6 @@ MeshCurve joined_curve(const PathDomain& domain, std::span<const MeshPoint> poin
   const std::size_t legs = closed ? points.size() : points.size() - 1;
   for (std::size_t k = 0; k < legs; ++k) {
     const exact::GeodesicPath leg = domain.path(points[k], points[(k + 1) % points.size()]);
-    if (leg.status != Status::ok)
-      throw InvalidArgument("seed_disconnected", "the surface does not connect the points of the seed curve",
-                            "use points of one component");
     for (std::size_t i = 0; i + 1 < leg.points.size(); ++i) {
       const Index face = common_face(domain.mesh, leg.points[i], leg.points[i + 1]);
       if (face < 0) continue;  // the same point

@@ -27,8 +27,7 @@ inline constexpr double seed_step = 0.125, pass_step = 0.25;
 std::vector<exact::MeshPoint> samples(const FaceMesh& mesh, const MeshCurve& curve, double step);
 double curve_length(const FaceMesh& mesh, const MeshCurve& curve);
 
-/// A curve through points in their order, joined by locally shortest paths.
-/// @throws InvalidArgument (points in different components)
+/// A curve through points of one component in their order, joined by locally shortest paths.
 MeshCurve joined_curve(const PathDomain& domain, std::span<const exact::MeshPoint> points, bool closed);
 
 /// The level curves at the distances first, first + 1, ... Closed ones that follow each other are joined to spirals.

@@ -206,6 +206,12 @@ void exchange(std::vector<TrackedPass>& passes) {
   for (std::size_t k = 1; k < n; ++k) passes[k].start_near(passes[k - 1].last());
 }
 
+/// A unit vector perpendicular to another one.
+Vec3 any_perpendicular(const Vec3& axis) {
+  const Vec3 any = std::abs(axis[0]) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+  return normalized(any - dot(any, axis) * axis);
+}
+
 /// Finds links that do not cut the surface.
 class Linker {
  public:
@@ -279,8 +285,8 @@ class Linker {
 
   /// Positions as of `through_space`, away from the surface to a sphere around it, along the sphere, and back.
   std::optional<std::vector<Vec3>> around(const Spot& from, const Spot& to) const {
-    std::optional<std::vector<Vec3>> result = way_out(from);
-    const std::optional<std::vector<Vec3>> in = result ? way_out(to) : std::nullopt;
+    std::optional<std::vector<Vec3>> result = path_to_sphere(from);
+    const std::optional<std::vector<Vec3>> in = result ? path_to_sphere(to) : std::nullopt;
     if (!in) return {};
     const Vec3 a = normalized(result->back() - center_), b = normalized(in->back() - center_);
     Vec3 side = b - dot(a, b) * a;
@@ -334,13 +340,9 @@ class Linker {
     }
     return center;
   }
-  static Vec3 any_perpendicular(const Vec3& axis) {
-    return cross(axis, std::abs(axis[0]) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0});
-  }
-
   /// Positions from the clearance over a spot, or half of it where there is no room, to the sphere around the surface: along the
   /// axis, and straight on in the direction nearest to the axis that is free.
-  std::optional<std::vector<Vec3>> way_out(const Spot& spot) const {
+  std::optional<std::vector<Vec3>> path_to_sphere(const Spot& spot) const {
     std::vector<Vec3> directions{spot.axis};
     for (const double x : {-1.0, 0.0, 1.0})
       for (const double y : {-1.0, 0.0, 1.0})
@@ -350,17 +352,23 @@ class Linker {
                      [&](const Vec3& a, const Vec3& b) { return dot(a, spot.axis) > dot(b, spot.axis); });
     const double share = can_rise(spot) ? 1 : 0.5;
     if (share < 1 && !can_rise(spot, share)) return {};
-    const Vec3 start = spot.position + share * clearance_ * spot.axis;
-    for (double height = share * clearance_; height < 2 * extent_; height *= 2) {
+    const double lowest = share * clearance_;
+    std::vector<Vec3> path{spot.position + lowest * spot.axis};
+    for (double height = lowest; height == lowest || height < 2 * outside_; height *= 2) {
       const Vec3 from = spot.position + height * spot.axis;
-      if (!is_free(start, from)) return {};
+      if (height > lowest) {
+        if (!is_free(path.front(), from)) return {};
+        path = {path.front(), from};
+      }
       for (const Vec3& direction : directions) {
         // |from + t direction - center| = radius of the sphere
         const Vec3 offset = from - center_;
         const double along = dot(offset, direction), square = dot(offset, offset) - outside_ * outside_;
         const double t = std::sqrt(std::max(0.0, along * along - square)) - along;
         const Vec3 end = from + t * direction;
-        if (t > 0 && is_free(from, end)) return std::vector<Vec3>{start, from, end};
+        if (!(t > 0 && is_free(from, end))) continue;
+        path.push_back(end);
+        return path;
       }
     }
     return {};
@@ -451,8 +459,7 @@ class PoseWriter {
       const Vec3 flat = poses[k - 1].travel - dot(poses[k - 1].travel, axis) * axis;
       if (norm(flat) > 1e-6) return normalized(flat);
     }
-    const Vec3 any = std::abs(axis[0]) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-    return normalized(any - dot(any, axis) * axis);
+    return any_perpendicular(axis);
   }
 
   /// The rotation with these x and z axes, as a quaternion (w, x, y, z).
@@ -500,7 +507,7 @@ void add_poses(const Surface& surface, const PathDomain& domain, std::vector<Pas
   double length = 0;
   for (const PassCurve& pass : passes) length += curve_length(domain.mesh, pass.curve);
   if (length / step > max_poses)
-    throw ResourceExhausted("the step, " + detail::number(options.step) +
+    throw ResourceExhausted("the step, " + detail::number(spacing * step) +
                             ", requires more than 2^24 poses; enlarge it, or cover a smaller region");
 
   std::vector<TrackedPass> tracks(passes.size());

@@ -52,13 +52,13 @@ void check(const ToolPathOptions& o) {
 
 /// Rejects faces that exact maps reject, before the refinement changes their numbers.
 void check_faces(const FaceMesh& mesh, double spacing) {
-  constexpr double min_height = 1e-13;  // as of `exact::PolyhedralSurface`
   for (std::size_t f = 0; f < mesh.size(); ++f) {
     const auto corner = [&](std::size_t c) { return mesh.points[to_size(mesh.faces[f][c])]; };
     const Vec3 ab = corner(1) - corner(0), ac = corner(2) - corner(0), bc = corner(2) - corner(1);
     const double longest = std::max({norm(ab), norm(ac), norm(bc)});
     if (!std::isfinite(longest)) continue;  // the refinement rejects the spacing
-    if (longest > 0 && norm(cross((1 / longest) * ab, (1 / longest) * ac)) > min_height) continue;
+    if (longest > 0 && norm(cross((1 / longest) * ab, (1 / longest) * ac)) > exact::PolyhedralSurface::min_height)
+      continue;
     const Vec3 at = spacing * mesh.position({static_cast<Index>(f), {1.0 / 3, 1.0 / 3, 1.0 / 3}});
     throw InvalidGeometry("the face around " + detail::number(at[0]) + ", " + detail::number(at[1]) + ", " +
                           detail::number(at[2]) +
@@ -88,20 +88,35 @@ SurfacePoint point_near(const Surface& surface, const Vec3& position, double spa
   return closest.point;
 }
 
-SurfacePoint on_surface(const Surface& surface, const CurvePoint& point, double spacing, const std::string& name,
-                        std::string_view fault) {
+SurfacePoint surface_point(const Surface& surface, const CurvePoint& point, double spacing, const std::string& name,
+                           std::string_view fault) {
   if (const auto* position = std::get_if<Vec3>(&point)) return point_near(surface, *position, spacing, name, fault);
   return std::get<SurfacePoint>(point);
+}
+
+/// The center of a disc, in spacings. Checks the disc.
+Vec3 center_of(const Surface& surface, const ToolPathRegion::Disc& disc, double spacing) {
+  check_positive("the radius of the region", disc.radius);
+  return (1 / spacing) * surface.position(surface_point(surface, disc.center, spacing, "the center of the region",
+                                                        "region_off_surface"));
+}
+
+/// Keeps the faces within a distance in space of the center of a disc. They contain all that its radius reaches.
+void keep_near(const Surface& surface, const ToolPathRegion::Disc& disc, double spacing, const FaceMesh& mesh,
+               std::vector<bool>& kept) {
+  const Vec3 center = center_of(surface, disc, spacing);
+  for (std::size_t f = 0; f < mesh.size(); ++f) {
+    const auto corner = [&](std::size_t c) { return mesh.points[to_size(mesh.faces[f][c])]; };
+    const auto nearest = nearest_in_triangle(center, corner(0), corner(1), corner(2));
+    kept[f] = distance(mesh.position({static_cast<Index>(f), nearest}), center) <= disc.radius / spacing;
+  }
 }
 
 /// Keeps the faces within a distance along the surface of a point.
 void keep_disc(const Surface& surface, const ToolPathRegion::Disc& disc, double spacing, const FaceMesh& mesh,
                std::vector<bool>& kept) {
-  check_positive("the radius of the region", disc.radius);
   const PathDomain domain(mesh);
-  const SurfacePoint point =
-      on_surface(surface, disc.center, spacing, "the center of the region", "region_off_surface");
-  const auto center = FaceLocator(domain.mesh).nearest((1 / spacing) * surface.position(point));
+  const auto center = FaceLocator(domain.mesh).nearest(center_of(surface, disc, spacing));
   std::fill(kept.begin(), kept.end(), false);
   if (!center) return;
   exact::ExactOptions options;
@@ -187,14 +202,15 @@ std::vector<MeshCurve> longest_loops(const PathDomain& domain) {
 
 /// A curve in space, moved to the mesh.
 /// @param name  of the curve, for messages: "seed"
+/// @param fault  name of the error, a literal
 MeshCurve on_mesh(const PathDomain& domain, std::span<const Vec3> points, bool closed, double spacing,
-                  const std::string& name) {
+                  const std::string& name, std::string_view fault) {
   const FaceLocator locator(domain.mesh);
   std::vector<MeshPoint> found;
   for (const Vec3& p : points)
     if (const auto point = locator.nearest((1 / spacing) * p)) found.push_back(*point);
   if (found.size() < 2)
-    throw InvalidArgument("seed_off_surface", "the " + name + " curve does not lie in the part that is covered",
+    throw InvalidArgument(fault, "the " + name + " curve does not lie in the part that is covered",
                           "choose a curve there");
   const Index component = domain.surface.component(found.front());
   if (!std::ranges::all_of(found, [&](const MeshPoint& p) { return domain.surface.component(p) == component; }))
@@ -284,15 +300,16 @@ struct SeedFinder {
   }
   std::vector<MeshCurve> operator()(const CurveSeed& curve) const {
     const SurfaceCurve drawn = drawn_curve(surface, curve.points, curve.closed, spacing, "seed", "seed_off_surface");
-    return {on_mesh(domain, drawn.points, curve.closed, spacing, "seed")};
+    return {on_mesh(domain, drawn.points, curve.closed, spacing, "seed", "seed_off_surface")};
   }
   std::vector<MeshCurve> operator()(const LineSeed& line) const {
     const double length = extent(domain.mesh) * spacing;
     const SurfacePoint start =
-        on_surface(surface, line.point, spacing, "the point of the seed line", "seed_off_surface");
+        surface_point(surface, line.point, spacing, "the point of the seed line", "seed_off_surface");
     std::optional<ExactGeodesics> geodesics;
     if (surface.faces().size() > 0) geodesics.emplace(surface);
     std::vector<Vec3> points;
+    std::size_t at = 0;  // the start
     for (const double side : {-1.0, 1.0}) {
       std::vector<Vec3> half;
       try {
@@ -312,9 +329,26 @@ struct SeedFinder {
       }
       if (side < 0) std::reverse(half.begin(), half.end());
       points.insert(points.end(), half.begin() + (side > 0 && !points.empty() ? 1 : 0), half.end());
+      if (side < 0) at = points.size() - 1;
     }
-    return {without_returns(domain.mesh, on_mesh(domain, points, false, spacing, "seed"),
-                            (1 / spacing) * surface.position(start))};
+    const MeshCurve curve = on_mesh(domain, part_around(points, at), false, spacing, "seed", "seed_off_surface");
+    return {without_returns(domain.mesh, curve, (1 / spacing) * surface.position(start))};
+  }
+
+ private:
+  /// The points of a line around one of them that lie in its component of the region, up to the first gap.
+  std::span<const Vec3> part_around(std::span<const Vec3> points, std::size_t at) const {
+    const FaceLocator locator(domain.mesh);
+    const auto component = [&](std::size_t k) {
+      const auto point = locator.nearest((1 / spacing) * points[k]);
+      return point ? domain.surface.component(*point) : -1;
+    };
+    const Index own = component(at);
+    if (own < 0) return {};
+    std::size_t low = at, end = at + 1;
+    while (low > 0 && component(low - 1) == own) --low;
+    while (end < points.size() && component(end) == own) ++end;
+    return points.subspan(low, end - low);
   }
 };
 
@@ -364,7 +398,8 @@ FaceMesh region_mesh(const Surface& surface, const ToolPathRegion& region, doubl
     std::vector<bool> kept(mesh.size());
     for (std::size_t f = 0; f < kept.size(); ++f) {
       const Vec3 normal = mesh.area_normal(static_cast<Index>(f));
-      kept[f] = dot(normal, region.facing->direction) >= std::cos(region.facing->angle) * norm(normal) * length;
+      const Vec3& direction = region.facing->direction;
+      kept[f] = std::atan2(norm(cross(normal, direction)), dot(normal, direction)) <= region.facing->angle + 1e-9;
     }
     keep(mesh, kept,
          "has a normal within " + detail::number(region.facing->angle * 180 / std::numbers::pi) +
@@ -384,6 +419,11 @@ FaceMesh region_mesh(const Surface& surface, const ToolPathRegion& region, doubl
   };
   check_extent();
   check_faces(mesh, spacing);
+  if (region.disc && region.enclosures.empty()) {  // the part around the center is all that a small disc needs
+    std::vector<bool> kept(mesh.size());
+    keep_near(surface, *region.disc, spacing, mesh, kept);
+    keep(mesh, kept, "lies within the radius around the center", "enlarge the radius");
+  }
   check_refinement(mesh, longest_side);
   const bool is_cut = !region.enclosures.empty() || region.disc;  // along the sides of short faces
   mesh = refined(mesh, is_cut ? longest_side : longest_window_side).mesh;
@@ -394,7 +434,7 @@ FaceMesh region_mesh(const Surface& surface, const ToolPathRegion& region, doubl
                             "a closed curve needs at least three");
     const PathDomain domain(std::move(mesh));
     const SurfaceCurve drawn = drawn_curve(surface, enclosure.points, true, spacing, "region", "region_off_surface");
-    const MeshCurve curve = on_mesh(domain, drawn.points, true, spacing, "region");
+    const MeshCurve curve = on_mesh(domain, drawn.points, true, spacing, "region", "region_off_surface");
     if (!curve.closed)
       throw InvalidArgument("region_off_surface", "the region curve leaves the part that the other conditions select",
                             "draw the curve there");

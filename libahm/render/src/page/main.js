@@ -155,7 +155,7 @@ Ahm.Viewer = class {
 
   click(hit) {
     if (this.tool === "path") return this.ask_path(hit);
-    if (this.is_drawing()) return;
+    if (this.is_drawing() || this.tool === "isolines") return;
     this.wanted = null;
     return this.ask_map(hit.source);
   }
@@ -283,7 +283,7 @@ Ahm.Viewer = class {
 
   // Repeats the last request with the current settings.
   ask_again() {
-    if (!this.request) return;
+    if (!this.request || this.tool === "isolines") return;
     return this.request.points ? this.ask_stroke(this.request.points) : this.ask_map(this.request.source);
   }
 

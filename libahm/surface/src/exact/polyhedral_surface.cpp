@@ -17,8 +17,6 @@ namespace {
 
 using std::numbers::pi;
 
-/// Faces flatter than this multiple of their longest side are rejected.
-constexpr double min_height = 1e-13;
 /// Angle sums that exceed 2 pi by less than this are flat.
 constexpr double flat_excess = 1e-13;
 
@@ -42,7 +40,7 @@ void check_face(Index face, const FaceSides& sides, const std::array<double, 3>&
   }
   for (int k : {0, 1})
     if (std::abs(sides[0][k] + sides[1][k] + sides[2][k]) > 1e-9 * longest) refuse(face, "has sides that do not close");
-  if (!(area > min_height * longest * longest))
+  if (!(area > PolyhedralSurface::min_height * longest * longest))
     refuse(face, "is degenerate: the ratio of its height to its longest side is " +
                      detail::number(area / longest / longest) + "; remove it or move its corners");
 }

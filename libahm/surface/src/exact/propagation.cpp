@@ -397,11 +397,7 @@ void Propagation::run(const Progress& progress) {
     if (windows_.key() > horizon_) break;
     if (only_targets_) horizon_ = std::min(horizon_, farthest_target());
     if (windows_.key() > horizon_) break;
-    if (has_enough_within(windows_.key())) {
-      horizon_ = windows_.key();
-      break;
-    }
-    if (max_windows_ > 0 && window_count_ >= max_windows_) {
+    if (has_enough_within(windows_.key()) || (max_windows_ > 0 && window_count_ >= max_windows_)) {
       horizon_ = windows_.key();
       break;
     }

@@ -324,7 +324,7 @@ class Propagation {
   double horizon_;
   bool only_targets_;
   Offset max_windows_;  ///< maximum number of windows; 0: no limit
-  Index max_vertices_;  ///< maximum number of vertices within the completed distance; 0: no limit
+  Index max_vertices_;  ///< ends when so many vertices are within the completed distance; 0: never
   std::size_t sources_ = 0;
   std::vector<double> distance_, target_distance_;
   std::vector<ArrivalRecord> reached_;

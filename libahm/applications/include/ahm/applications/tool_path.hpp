@@ -94,8 +94,8 @@ struct ToolPathOptions {
 enum class ToolMotion {
   pass,      ///< along a pass
   link,      ///< from pass to pass, on the surface or lifted
-  approach,  ///< from the clearance down to the start of a pass
-  retreat,   ///< from the end of a pass up to the clearance
+  approach,  ///< down to the start of a pass, from the clearance or, on links around the part, from half of it
+  retreat,   ///< from the end of a pass up to there
 };
 
 /// A pose of the tool.
@@ -138,8 +138,8 @@ struct ToolPath {
   double spacing = 0;                       ///< of the options, world units
   double pass_length = 0, link_length = 0;  ///< links: with approach and retreat; world units
   Index surface_links = 0;                  ///< links on the surface
-  Index lifted_links = 0;                   ///< links at the clearance
-  /// Links that are missing: no path on the surface or at the clearance was found that does not cut the surface. The tool
+  Index lifted_links = 0;                   ///< links at the clearance, higher, or around the part
+  /// Links that are missing: no path was found that does not cut the surface. The tool
   /// must move from the last pose of the pass to the next pass by other means.
   Index missing_links = 0;
   Index uncovered_components = 0;  ///< components of the region without a seed
@@ -158,7 +158,7 @@ struct ToolPath {
 /// `exact::exact_map`), ResourceExhausted (more than 2^26 triangles, more than 2^24 poses), Cancelled
 ToolPath tool_path(const Surface& surface, const ToolPathOptions& options);
 
-/// Whether a tool path covers a row, and why not.
+/// Whether a tool path covers a row, and why not; from best to worst.
 enum class RowCoverage : std::uint8_t {
   covered,         ///< within 0.6 spacings of a pass, along the surface
   gap,             ///< farther from the passes

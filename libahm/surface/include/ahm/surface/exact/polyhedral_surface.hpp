@@ -48,6 +48,9 @@ struct HalfRecord {
 /// may be glued to each other.
 class PolyhedralSurface {
  public:
+  /// Triangles flatter than this multiple of their longest side are rejected.
+  static constexpr double min_height = 1e-13;
+
   /// @param edges    half-edges of triangles
   /// @param sides    one per face; both faces of an edge have the same length for it to 1e-9
   /// @param corners  per vertex: a half-edge that starts there, whose face defines the orientation of the vertex; -1 for a
