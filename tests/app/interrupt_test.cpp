@@ -125,7 +125,7 @@ TEST_F(Scarce, DiskIsReported) {
 TEST_F(Scarce, MemoryIsReported) {
   write("sphere.xyz", xyz(sphere(2000)));
   int refused = 0, done = 0;
-  for (const rlim_t megabytes : {250, 350, 500, 700, 1600})
+  for (const rlim_t megabytes : {250, 400, 700})
     for (const char* command :
          {"logmap sphere.xyz --source 0 -o map.csv", "local-maps sphere.xyz --radius 100 -o maps.npz"}) {
       const auto outcome = run_within(RLIMIT_AS, megabytes << 20, command);

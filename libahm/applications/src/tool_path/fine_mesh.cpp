@@ -1,11 +1,13 @@
 #include "tool_path/fine_mesh.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 #include "ahm/error.hpp"
 #include "ahm/util/small_math.hpp"

@@ -5,7 +5,6 @@
 #include <limits>
 #include <map>
 #include <numbers>
-#include <optional>
 
 #include "ahm/error.hpp"
 #include "ahm/util/small_math.hpp"

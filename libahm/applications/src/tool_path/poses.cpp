@@ -1,9 +1,10 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <optional>
 #include <unordered_set>
+#include <utility>
 
 #include "ahm/error.hpp"
 #include "ahm/util/parallel.hpp"

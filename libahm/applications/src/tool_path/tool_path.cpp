@@ -9,6 +9,8 @@
 #include <numeric>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <variant>
 
 #include "ahm/error.hpp"
 #include "ahm/surface/exact/exact_geodesics.hpp"
