@@ -286,6 +286,10 @@ class Page(unittest.TestCase):
         self.settled()
         self.shot("isolines")
         self.expect_export("isolines.obj")
+        number = self.js("return ahm.server.number")
+        self.at(*rows[0][1:]).click().perform()
+        self.settled()
+        self.assertEqual(self.js("return ahm.server.number"), number)  # a click makes no map here
         self.js("ahm.set_tool('stroke')")
         (_, x, y), (_, to_x, to_y) = rows[0], rows[-1]
         chain = self.at(x, y).click_and_hold()
