@@ -57,13 +57,14 @@ tidy-all() {
     run_tidy tidy-all --checks=-performance-unnecessary-value-param,-bugprone-suspicious-include
 }
 
-# Tests that take half a minute or more each under the sanitizers. Other tests cover the same lines.
-slow=("CholeskyFactor.SolvesAsEigens*" ExactMap.GoesFarAlongTubes ExactMap.IsRefusedWhereNeedlesLoseWindows ExactMap.NamesMeshesOnWhichWindowsDoNotEnd
-  FactorFront.IsEigensOfEverySmallFrontAndOfLargeOnes LocalMaps.ApproachTheMapOfTheWholeGraphWithTheMargin
+# Tests that take 20 seconds or more each under the sanitizers. Other tests cover the same lines.
+slow=("CholeskyFactor.SolvesAsEigens*" CloudEdges.DoNotDependOnTheNumberOfThreads ExactMap.GoesFarAlongTubes ExactMap.IsRefusedWhereNeedlesLoseWindows ExactMap.NamesMeshesOnWhichWindowsDoNotEnd
+  FactorFront.IsEigensOfEverySmallFrontAndOfLargeOnes Layers.AreNotReportedForNoiseBendsAndCorners LocalMaps.ApproachTheMapOfTheWholeGraphWithTheMargin
   LocalMaps.DoNotDependOnThreadsOrOnOtherSources LocalMaps.RefuseWhatFillsTheMemory March.AgreesWithTheGlobalSolve March.DoesNotDependOnThreads
   March.EndsWhereHeatDistancesAreBeyondAllNumbers March.HasNoHorizon March.TakesSeveralBands Normals.WithNoiseAreNoWorseThanNone
   Renderer.DoesNotDependOnTheNumberOfThreads SphereCloud.ConvergesOnRandomPointsInBothVariants
-  StreamedLogMap.ForgetsWhatTheFrontHasPassed StreamedLogMap.GoesOnFromTheEndOfAnyBand)
+  Strategy.IsChosenFromTheNumberOfMapsAndTheMemory StreamedLogMap.ForgetsWhatTheFrontHasPassed StreamedLogMap.GoesOnFromTheEndOfAnyBand ToolPath.OffsetIsTheCenterOfABall
+  ToolPath.SpiralsCoverAsSeparatePassesDo)
 
 sanitizers() {
   echo "Sanitizers (build/asan) ..."
