@@ -252,10 +252,11 @@ def operators(surface: SurfaceLike, *, t_coef: float = 1.0, k_eig: Optional[int]
     frame of the vertex (`e_ij`), as in DiffusionNet [SACO22]. It is exact for linear functions on flat surfaces. Where the edges do
     not span the tangent space, it is the shortest such vector.
 
-    With delaunay=False, mass and Laplacian of a triangle mesh are those of DiffusionNet, and so is the gradient, up to rotations of the
-    frames, with two differences. `e_ij` has the length of the edge, and the angles around a vertex are scaled to 2 pi; DiffusionNet
-    projects edges to the plane orthogonal to the normal, which differs by the square of the edge length. DiffusionNet also adds 1e-5 to
-    the diagonal of the normal equations. By default the edges are flipped to the intrinsic Delaunay triangulation before.
+    With delaunay=False and clamp_weights=False, mass and Laplacian of a triangle mesh are those of DiffusionNet (with clamp_weights=True
+    negative cotangents are zero), and so is the gradient, up to rotations of the frames, with two differences. `e_ij` has the length of the
+    edge, and the angles around a vertex are scaled to 2 pi; DiffusionNet projects edges to the plane orthogonal to the normal, which
+    differs by the square of the edge length, on rough meshes by a third. DiffusionNet also adds 1e-5 to the diagonal of the normal
+    equations. By default the edges are flipped to the intrinsic Delaunay triangulation before.
 
     >>> import ahm
     >>> ops = ahm.operators(ahm.shapes.sphere(3), k_eig=9)

@@ -61,7 +61,7 @@ def edges(maps: _Maps, dtype: Any = torch.float32) -> Edges:
         copies: a change of one changes the other. `transport` is then a view with its conjugate bit set (`resolve_conj` makes a copy).
 
     `transport` is the inverse of `ahm.LocalMaps.transport`, because messages go from the neighbor to the source. Rows without a
-    vertex have no edges, and no number is NaN.
+    vertex have no edges, and no number is NaN (on surfaces whose sizes single precision holds).
 
     Raises ValueError (another dtype; a source that is not a row; maps of another dimension than 2; a surface that is not orientable, whose
     transports are no rotations: make the maps with transport=False).
