@@ -434,6 +434,17 @@ TEST(ToolPath, OffsetIsTheCenterOfABall) {
   for (const ToolPass& pass : path.passes) EXPECT_NEAR(pass.length, 2 * (4 - offset), 1e-3);
 }
 
+TEST(ToolPath, EndsWhereABallDoesNotFit) {
+  // A ball of radius 0.5 does not fit into a slit of width 0.5 between two boxes: no pass jumps over it or into it.
+  const auto surface = surface_of(joined(box({2, 2, 2}), box({2, 2, 2}), {2.5, 0, 0}));
+  const ToolPath path = tool_path(surface, {.spacing = 0.25, .offset = 0.5});
+  for (std::size_t k = 1; k < path.poses.size(); ++k) {
+    const ToolPose &a = path.poses[k - 1], &b = path.poses[k];
+    if (a.kind != ToolMotion::pass || b.kind != ToolMotion::pass || a.pass != b.pass) continue;
+    EXPECT_GE(surface.closest_point(0.5 * (a.position + b.position)).distance, 0.4);
+  }
+}
+
 TEST(ToolPath, OfABallThatIsTooLargeIsRefused) {
   Mesh inside = icosphere(4);
   for (Triangle& f : inside.faces) std::swap(f[0], f[1]);

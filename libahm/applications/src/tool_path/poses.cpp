@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <unordered_set>
@@ -257,7 +258,8 @@ class Linker {
     const exact::GeodesicPath path = domain_.path(from.point, to.point);
     if (path.status != Status::ok || path.length > longest) return {};
     Track track{from};
-    for (std::size_t k = 1; k + 1 < path.points.size(); ++k) append(path.points[k], track);
+    for (std::size_t k = 1; k + 1 < path.points.size(); ++k)
+      if (!append(path.points[k], track)) return {};
     track.push_back(to);
     return track;
   }
@@ -302,17 +304,18 @@ class Linker {
     return is_free(*result) ? result : std::nullopt;
   }
 
-  /// Appends the pose at a point to a track, unless a ball of the offset does not fit there, or the pose is the last one.
-  void append(const MeshPoint& point, Track& track) const {
+  /// Appends the pose at a point to a track, unless the pose is the last one. @return whether a ball of the offset fits there
+  bool append(const MeshPoint& point, Track& track) const {
     Spot spot{point, domain_.mesh.position(point), {}, normals_.at(point)};
     const std::optional<Vec3> position = offset_ > 0 ? ball_center(spot.contact, spot.axis) : spot.contact;
-    if (!position) return;
+    if (!position) return false;
     spot.position = *position;
     if (offset_ > 0 && !track.empty() && distance(track.back().position, spot.position) < same_place) {
-      if (dot(track.back().axis, spot.axis) > same_axis) return;
+      if (dot(track.back().axis, spot.axis) > same_axis) return true;
       spot.position = track.back().position;  // the tool turns at this place
     }
     track.push_back(spot);
+    return true;
   }
 
  private:
@@ -511,18 +514,28 @@ void add_poses(const Surface& surface, const PathDomain& domain, std::vector<Pas
     throw ResourceExhausted("the step, " + detail::number(spacing * step) +
                             ", requires more than 2^24 poses; enlarge it, or cover a smaller region");
 
-  std::vector<TrackedPass> tracks(passes.size());
+  std::vector<std::vector<TrackedPass>> pieces(passes.size());  // a pass ends where a ball of the offset does not fit
   detail::parallel_chunks(static_cast<Offset>(passes.size()), 1, options.threads, [&](Offset k, Offset) {
     const PassCurve& pass = passes[static_cast<std::size_t>(k)];
     std::vector<MeshPoint> points = samples(domain.mesh, pass.curve, step);
     if (pass.curve.closed) points.push_back(points.front());
-    TrackedPass& track = tracks[static_cast<std::size_t>(k)];
-    track = {{}, pass.origin, pass.distance, pass.curve.closed};
     points = simplified(domain.mesh, points, step, tolerance);
     if (pass.curve.closed) points.pop_back();
-    for (const MeshPoint& point : points) linker.append(point, track.track);
-    if (pass.curve.closed && !track.track.empty()) track.track.push_back(track.track.front());
+    std::vector<Track> parts(1);
+    bool is_whole = true;
+    for (const MeshPoint& point : points)
+      if (!linker.append(point, parts.back())) {
+        is_whole = false;
+        if (!parts.back().empty()) parts.emplace_back();
+      }
+    const bool closed = pass.curve.closed && is_whole;
+    if (closed && !parts.back().empty()) parts.back().push_back(parts.back().front());
+    for (Track& part : parts)
+      pieces[static_cast<std::size_t>(k)].push_back({std::move(part), pass.origin, pass.distance, closed});
   });
+  std::vector<TrackedPass> tracks;
+  for (std::vector<TrackedPass>& of_pass : pieces)
+    tracks.insert(tracks.end(), std::make_move_iterator(of_pass.begin()), std::make_move_iterator(of_pass.end()));
   std::erase_if(tracks, [](const TrackedPass& pass) { return pass.track.size() < 2; });
   if (tracks.empty() && options.offset == 0)
     throw InvalidArgument("spacing_too_large", "every pass on the region has only one pose",
