@@ -8,9 +8,9 @@
 
 #include "ahm/conformance/parts.hpp"
 #include "ahm/conformance/triangle_meshes.hpp"
-#include "ahm/trimesh/triangle_mesh_surface.hpp"
 #include "ahm/util/small_math.hpp"
 #include "ahm/util/vec.hpp"
+#include "part_surface.hpp"
 
 namespace ahm::test {
 namespace {
@@ -19,9 +19,7 @@ using detail::Half;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-FaceMesh face_mesh_of(const Mesh& mesh) {
-  return face_mesh(trimesh::TriangleMeshSurface::build(mesh.positions, mesh.faces));
-}
+FaceMesh face_mesh_of(const Mesh& mesh) { return face_mesh(surface_of(mesh)); }
 
 double area(const FaceMesh& mesh) {
   double sum = 0;
