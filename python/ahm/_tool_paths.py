@@ -56,7 +56,7 @@ def isolines(surface: SurfaceLike, values: Vector, levels: Union[float, Vector, 
         return [Isoline(*line) for line in _core.isolines(on._body, of_rows, at, step, report)]
 
 
-_KINDS = np.array(["pass", "link", "approach", "retreat"])
+_KINDS = np.array(["pass", "link", "approach", "retreat", "missing"])
 _COVERAGES = np.array(["covered", "gap", "no_pass", "outside_region", "no_triangle", "removed"])
 _ORIGINS = ("seed", "level", "cut_locus", "boundary", "spiral")
 
@@ -81,8 +81,10 @@ class ToolPath(NamedTuple):
     travel: np.ndarray  #: (k, 3) directions of travel, unit vectors perpendicular to the axes
     quaternion: np.ndarray  #: (k, 4) rotations (w, x, y, z) that take z to the axis and x to the travel
     pass_number: np.ndarray  #: (k,) int32 number of the pass; on links that of the next pass
-    kind: np.ndarray  #: (k,) "pass", "link", "approach" or "retreat": the motion that ends at the pose
-    arclength: np.ndarray  #: (k,) length of the path from its first pose, world units
+    #: (k,) "pass", "link", "approach" or "retreat": the motion that ends at the pose; "missing": no link was found, so that the
+    #: tool must get there by other means
+    kind: np.ndarray
+    arclength: np.ndarray  #: (k,) length of the path from its first pose, without missing links, world units
     passes: List[ToolPass]  #: in order of travel
     #: area, covered (share of the area within 0.6 spacings of a pass), largest_gap (in spacings), double_covered (share of
     #: the pass length), pass_length, link_length, surface_links, lifted_links, missing_links, uncovered_components
@@ -90,6 +92,7 @@ class ToolPath(NamedTuple):
     #: (n,) "covered" (within 0.6 spacings of a pass), or why a row is not: "gap"; "no_pass", in a component that the seed does
     #: not reach, or that is too small; "outside_region"; "no_triangle", isolated points of clouds; "removed", or used by no face
     rows: np.ndarray
+    chord_error: float  #: of the options, or its default, world units
 
     @property
     def poses(self) -> np.ndarray:
@@ -106,29 +109,29 @@ class ToolPath(NamedTuple):
         result[:, :3, 2], result[:, :3, 3], result[:, 3, 3] = self.axis, self.position, 1
         return result
 
-    def _poses(self) -> Tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, int]:
+    def _poses(self) -> Tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         kinds = np.argmax(self.kind[:, None] == _KINDS, axis=1).astype(np.uint8)
-        return (self.position, self.axis, self.quaternion, self.pass_number, kinds, self.arclength,
-                int(self.measures["missing_links"]))
+        return self.position, self.axis, self.quaternion, self.pass_number, kinds, self.arclength
 
-    def gcode(self, feed: float, *, axes: int = 3, units: str = "mm", blend: float = 0) -> str:
+    def gcode(self, feed: float, *, axes: int = 3, units: str = "mm", blend: Optional[float] = None) -> str:
         """The path as a program in RS-274/NGC, the dialect of LinuxCNC. Lifted motions are rapid (G0), all others G1.
 
         feed : speed, world units per minute, > 0.
         axes : 3, the tool along z; or 5, also A and C in degrees such that the tool axis is
             (sin A sin C, sin A cos C, cos A), as in LinuxCNC's xyzac-trt, with the tool center point at X, Y, Z.
         units : "mm" or "inch". Numbers are not converted.
-        blend : largest deviation by which the machine may blend corners (G64 P), world units; 0: none (G61).
+        blend : largest deviation by which the machine may blend corners (G64 P), world units. 0: none (G61); None: the chord
+            error of the path.
 
         >>> import ahm
         >>> ahm.tool_path(ahm.shapes.plane(9, 9), 2, facing=[0, 0, 1]).gcode(800).splitlines()[:3]
-        ['(tool path by libahm)', 'G21 G17 G40 G80 G90 G94', 'G61']
+        ['(tool path by libahm)', 'G21 G17 G40 G80 G90 G94', 'G64 P0.0100000']
 
         Raises ValueError for missing links, and with 3 axes for passes whose tool axis does not point up.
         """
         inches = arguments.choice(units, "units", ("mm", "inch")) == "inch"
         return _core.gcode(*self._poses(), arguments.real(feed, "feed", positive=True), arguments.integer(axes, "axes"),
-                           inches, arguments.real(blend, "blend"))
+                           inches, self.chord_error if blend is None else arguments.real(blend, "blend"))
 
     def ros_yaml(self, message: str = "PoseArray", *, frame: str = "map", feed: Optional[float] = None) -> str:
         """The path as a message of ROS 1, in YAML as `rostopic pub -f` reads it. ROS expects meters.
@@ -141,7 +144,7 @@ class ToolPath(NamedTuple):
         >>> print(ahm.tool_path(ahm.shapes.plane(9, 9), 2).ros_yaml(frame="part").splitlines()[0])
         header: {seq: 0, stamp: {secs: 0, nsecs: 0}, frame_id: "part"}
 
-        Raises ValueError naming the argument.
+        Raises ValueError naming the argument, and for missing links.
         """
         stamped = arguments.choice(message, "message", ("PoseArray", "Path")) == "Path"
         return _core.ros_yaml(*self._poses(), stamped, frame, 0.0 if feed is None else arguments.real(feed, "feed", positive=True))
@@ -159,10 +162,12 @@ def _vector(value: Vector, name: str) -> np.ndarray:
 
 
 def _seed(seed: str, plane: Optional[Tuple[Vector, Vector]], curve: Optional[Matrix],
-          line: Optional[Tuple[Source, Union[Vector, float]]]) -> Tuple[str, np.ndarray]:
-    """The kind of the seed, and its points and vectors. A line at an angle has none."""
-    if sum(given is not None for given in (plane, curve, line)) + (seed != "auto") > 1:
-        raise ValueError("seed: use one of seed, plane, curve and line")
+          line: Optional[Tuple[Source, Union[Vector, float]]], feature: Optional[float]) -> Tuple[str, np.ndarray]:
+    """The kind of the seed, and its points and vectors. A feature edge, and a line at an angle, have none."""
+    if sum(given is not None for given in (plane, curve, line, feature)) + (seed != "auto") > 1:
+        raise ValueError("seed: use one of seed, plane, curve, line and feature")
+    if feature is not None:
+        return "feature", np.empty((0, 3))
     if line is not None:
         if not isinstance(line, (tuple, list)) or len(line) != 2:
             raise TypeError("line: expected (point, direction)")
@@ -184,7 +189,7 @@ def _require(name: str, given: bool, of: str, is_there: bool) -> None:
 
 def tool_path(surface: SurfaceLike, spacing: float, *, seed: str = "auto", plane: Optional[Tuple[Vector, Vector]] = None,
               curve: Optional[Matrix] = None, closed: bool = False, line: Optional[Tuple[Source, Union[Vector, float]]] = None,
-              rows: Union[Array, Sequence[bool], None] = None,
+              feature: Optional[float] = None, near: Optional[Source] = None, rows: Union[Array, Sequence[bool], None] = None,
               facing: Optional[Vector] = None, max_angle: Optional[float] = None, inside: Optional[Matrix] = None,
               outside: Optional[Matrix] = None, center: Optional[Source] = None, radius: Optional[float] = None, spiral: bool = False,
               step: Optional[float] = None, chord_error: Optional[float] = None, tool_radius: Optional[float] = None,
@@ -202,6 +207,9 @@ def tool_path(surface: SurfaceLike, spacing: float, *, seed: str = "auto", plane
     line : (point, direction): passes parallel to the straight line through a point of the surface, in both directions. The
         point is a row, a position, `(face, barycentric)`, or `((row, row), t)`; the direction a vector in space, or an angle
         in radians from the u axis of a log map at the point, counterclockwise.
+    feature : angle in radians, in (0, pi]: passes parallel to the longest feature edge of each component, where the normal turns
+        by this angle or more.
+    near : a point, as in `line`: passes parallel to the feature edge nearest to it.
     rows : (n,) bool, cover only triangles whose corners are all True.
     facing, max_angle : cover only what faces a direction, a vector in space: [0, 0, 1] is the upper side of a part. The angle
         between the normal and the vector is at most `max_angle` (radians, in [0, pi]; None: pi / 4). What other parts hide is
@@ -232,9 +240,15 @@ def tool_path(surface: SurfaceLike, spacing: float, *, seed: str = "auto", plane
     """
     on = as_body(surface)
     apart = arguments.real(spacing, "spacing", positive=True)
-    kind, points = _seed(seed, plane, curve, line)
-    start = None if line is None else places.point(line[0], "line[0]", on)
-    turn = 0.0 if line is None or len(points) else arguments.real(line[1], "line[1]")
+    kind, points = _seed(seed, plane, curve, line, feature)
+    start = None
+    turn = 0.0
+    if line is not None:
+        start = places.point(line[0], "line[0]", on)
+        turn = turn if len(points) else arguments.real(line[1], "line[1]")
+    if feature is not None:
+        start = None if near is None else places.point(near, "near", on)
+        turn = arguments.real(feature, "feature")
     mask = np.empty(0, np.uint8)
     if rows is not None:
         given = np.asarray(arguments.unwrapped(rows))
@@ -244,6 +258,7 @@ def tool_path(surface: SurfaceLike, spacing: float, *, seed: str = "auto", plane
     toward = arguments.vector(facing, "facing")
     is_closed_curve = arguments.flag(closed, "closed")
     _require("closed", is_closed_curve, "curve", curve is not None)
+    _require("near", near is not None, "feature", feature is not None)
     _require("max_angle", max_angle is not None, "facing", facing is not None)
     _require("radius", radius is not None, "center", center is not None)
     _require("center", center is not None, "radius", radius is not None)
@@ -260,10 +275,11 @@ def tool_path(surface: SurfaceLike, spacing: float, *, seed: str = "auto", plane
         if length is not None:
             options[name] = arguments.real(length, name, positive=True)
     with reporting(progress) as report:
-        position, contact, axis, travel, quaternion, number, motion, arclength, passes, measures, coverage = _core.tool_path(
+        (position, contact, axis, travel, quaternion, number, motion, arclength, passes, measures, coverage,
+         error) = _core.tool_path(
             on._body, apart, kind, points, is_closed_curve, start, turn, mask,
             np.empty(0) if toward is None else toward, angle, within, without, middle, options, report)
     made = [ToolPass(begin, end, is_closed, _ORIGINS[origin], distance, length)
             for begin, end, is_closed, origin, distance, length in passes]
     return ToolPath(position, contact, axis, travel, quaternion, number, _KINDS[motion], arclength, made, measures,
-                    _COVERAGES[coverage])
+                    _COVERAGES[coverage], error)

@@ -49,21 +49,27 @@ LineSeed line_of(const Body& body, const py::tuple& start, const Doubles& direct
   });
 }
 
-/// @param seed    auto, boundary, plane, curve or line
+/// @param seed    auto, boundary, plane, curve, line or feature
 /// @param points  (n, 3): point and normal of the plane, points of the curve, direction of the line
-/// @param start   point of the line, or None. @param angle  of the line, if `points` is empty
+/// @param start   point of the line or near the feature edge, or None
+/// @param angle   of the line, if `points` is empty, or of the feature edge
 /// @param mask    empty, or one byte per row
 /// @param facing  empty, or a direction
 /// @param center  of the disc with the radius in the options, or None
 /// @param inside, outside  empty, or the points of closed curves
 /// @return position, contact, axis, travel, quaternion, pass, kind, arclength of the poses; begin, end, closed, kind, distance,
-/// length of the passes; measures and links; coverage of the rows
+/// length of the passes; measures and links; coverage of the rows; the chord error
 py::tuple tool_path_of(const BodyPtr& body, double spacing, const std::string& seed, const Doubles& points, bool closed,
                        const py::object& start, double angle, const Bytes& mask, const Doubles& facing,
                        double max_angle, const Doubles& inside, const Doubles& outside, const py::object& center,
                        const py::dict& options, const py::object& report) {
   ToolPathOptions o{.spacing = spacing, .seed = seed_of(seed, points, closed)};
-  if (!start.is_none()) o.seed = line_of(*body, start.cast<py::tuple>(), points, angle);
+  if (seed == "line") o.seed = line_of(*body, start.cast<py::tuple>(), points, angle);
+  if (seed == "feature") {
+    FeatureSeed feature{angle};
+    if (!start.is_none()) feature.near = places(start.cast<py::tuple>()).places[0];
+    o.seed = feature;
+  }
   if (!center.is_none()) {
     o.region.disc = {places(center.cast<py::tuple>()).places[0], 0};
     read(options, "radius", o.region.disc->radius);
@@ -119,18 +125,17 @@ py::tuple tool_path_of(const BodyPtr& body, double spacing, const std::string& s
                "link_length"_a = path.link_length, "surface_links"_a = path.surface_links,
                "lifted_links"_a = path.lifted_links, "missing_links"_a = path.missing_links,
                "uncovered_components"_a = path.uncovered_components),
-      owned(std::move(rows)));
+      owned(std::move(rows)), path.chord_error);
 }
 
 /// The arrays of a path as poses.
 ToolPath path_of(const Doubles& positions, const Doubles& axes, const Doubles& quaternions, const Indices& passes,
-                 const Bytes& kinds, const Doubles& arclengths, Index missing_links) {
+                 const Bytes& kinds, const Doubles& arclengths) {
   const std::span<const Vec3> position = vectors(positions), axis = vectors(axes);
   const std::span<const double> q = numbers(quaternions), arclength = numbers(arclengths);
   const std::span<const Index> pass = numbers(passes);
   const std::span<const std::uint8_t> kind = numbers(kinds);
   ToolPath path;
-  path.missing_links = missing_links;
   for (std::size_t k = 0; k < position.size(); ++k)
     path.poses.push_back({.position = position[k],
                           .contact = {},
@@ -144,16 +149,16 @@ ToolPath path_of(const Doubles& positions, const Doubles& axes, const Doubles& q
 }
 
 std::string gcode_of(const Doubles& positions, const Doubles& axes, const Doubles& quaternions, const Indices& passes,
-                     const Bytes& kinds, const Doubles& arclengths, Index missing_links, double feed, int machine_axes,
-                     bool inches, double blend) {
-  return gcode(path_of(positions, axes, quaternions, passes, kinds, arclengths, missing_links),
+                     const Bytes& kinds, const Doubles& arclengths, double feed, int machine_axes, bool inches,
+                     double blend) {
+  return gcode(path_of(positions, axes, quaternions, passes, kinds, arclengths),
                {.feed = feed, .axes = machine_axes, .inches = inches, .blend = blend});
 }
 
 std::string ros_yaml_of(const Doubles& positions, const Doubles& axes, const Doubles& quaternions,
-                        const Indices& passes, const Bytes& kinds, const Doubles& arclengths, Index missing_links,
-                        bool stamped, const std::string& frame, double feed) {
-  return ros_yaml(path_of(positions, axes, quaternions, passes, kinds, arclengths, missing_links),
+                        const Indices& passes, const Bytes& kinds, const Doubles& arclengths, bool stamped,
+                        const std::string& frame, double feed) {
+  return ros_yaml(path_of(positions, axes, quaternions, passes, kinds, arclengths),
                   {.message = stamped ? RosMessage::path : RosMessage::pose_array, .frame = frame, .feed = feed});
 }
 

@@ -8,6 +8,7 @@
 #include <set>
 #include <sstream>
 
+#include "ahm/applications/tool_path_text.hpp"
 #include "ahm/conformance/parts.hpp"
 #include "ahm/pointcloud/point_cloud_surface.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
@@ -122,6 +123,34 @@ TEST(ToolPath, CountsLinksThatAreMissing) {
   EXPECT_EQ(path.missing_links, 1);
   EXPECT_EQ(path.surface_links + path.lifted_links + path.missing_links, std::ssize(path.passes) - 1);
   EXPECT_GE(tool_path_measures(surface, path).covered, 0.99);
+  // One pose says so. The length of the path goes on without the jump, and no run joins the two ends.
+  double length = 0;
+  for (std::size_t k = 1; k < path.poses.size(); ++k) {
+    const bool is_missing = path.poses[k].kind == ToolMotion::missing;
+    if (!is_missing) length += norm(path.poses[k].position - path.poses[k - 1].position);
+    EXPECT_NEAR(path.poses[k].arclength, length, 1e-9 * length);
+    if (is_missing) EXPECT_EQ(path.poses[k - 1].kind, ToolMotion::retreat);
+    if (is_missing) EXPECT_EQ(path.poses[k + 1].kind, ToolMotion::approach);
+  }
+  EXPECT_EQ(std::ranges::count(path.poses, ToolMotion::missing, &ToolPose::kind), 1);
+  EXPECT_NEAR(path.pass_length + path.link_length, length, 1e-9 * length);
+  for (const ToolRun& run : tool_runs(path))
+    if (run.kind == ToolMotion::missing) EXPECT_EQ(run.from, run.begin);
+}
+
+TEST(ToolPath, RisesOnlyWhereThereIsRoom) {
+  // Above the lower plate, at a third of the clearance, lies the upper one. Both face up.
+  const Mesh plate = holed_plate();
+  const Mesh two = joined(plate, plate, {0, 0, 0.36});
+  const auto surface = surface_of(two);
+  const ToolPath path = tool_path(surface, {.spacing = 0.5, .clearance = 1});
+  for (std::size_t k = 1; k < path.poses.size(); ++k) {
+    const ToolPose &a = path.poses[k - 1], &b = path.poses[k];
+    if (b.kind == ToolMotion::missing || b.kind == ToolMotion::pass) continue;
+    for (const Triangle& f : two.faces)
+      EXPECT_FALSE(crosses(a.position, b.position, two.positions[f[0]], two.positions[f[1]], two.positions[f[2]], 1e-3))
+          << "pose " << k << " of kind " << static_cast<int>(b.kind);
+  }
 }
 
 TEST(ToolPath, CoversABoxFromASectionWithAPlane) { expect_path(box({4, 3, 2}), 0.3, PlaneSeed{{1, 1, 1}, {1, 2, 3}}); }
@@ -292,6 +321,38 @@ TEST(ToolPath, IsParallelToADrawnCurveAndToALine) {
   }
 }
 
+TEST(ToolPath, IsParallelToAFeatureEdge) {
+  // The edges of a box meet at corners, the rims of a cylinder are closed.
+  const auto on_box = surface_of(box({4, 3, 2}));
+  const auto first = [](const ToolPath& path) {
+    return *std::ranges::find(path.passes, PassOrigin::seed, &ToolPass::origin);
+  };
+  for (const auto& near : {std::optional<CurvePoint>(), std::optional<CurvePoint>(Vec3{2, 1.5, 2}),
+                           std::optional<CurvePoint>(Vec3{4, 1.5, 1.9})}) {
+    const ToolPath path = tool_path(on_box, {.spacing = 0.3, .seed = FeatureSeed{1.5, near}});
+    const ToolPass edge = first(path);
+    EXPECT_NEAR(edge.length, near && (*std::get_if<Vec3>(&*near))[0] == 4 ? 3 : 4, 1e-9);
+    EXPECT_FALSE(edge.closed);
+    const ToolPathMeasures measures = tool_path_measures(on_box, path);
+    EXPECT_GE(measures.covered, 0.99);
+    EXPECT_LE(measures.largest_gap, 1.25);
+    EXPECT_LE(measures.double_covered, 0.03);
+  }
+  const auto on_cylinder = surface_of(cylinder(3, true));
+  for (const double side : {0.0, 3.0}) {
+    const ToolPass rim = first(tool_path(on_cylinder, {.spacing = 0.3, .seed = FeatureSeed{1.5, Vec3{1, 0, side}}}));
+    EXPECT_TRUE(rim.closed);
+    EXPECT_NEAR(rim.length, 2 * std::numbers::pi, 0.01);
+  }
+  // At the sides of the prism, normals turn by 7.5 degrees.
+  EXPECT_FALSE(first(tool_path(on_cylinder, {.spacing = 0.3, .seed = FeatureSeed{0.13}})).closed);
+  for (const double angle : {0.0, 3.2, std::nan("")})
+    expect_error<InvalidArgument>([&] { tool_path(on_box, {.spacing = 0.3, .seed = FeatureSeed{angle}}); },
+                                  "in (0, 180]");
+  expect_error<InvalidArgument>([&] { tool_path(on_box, {.spacing = 0.3, .seed = FeatureSeed{1.6}}); },
+                                "nowhere by 91.67");
+}
+
 TEST(ToolPath, ALineEndsWhereItReturns) {
   // Around a cylinder, a line meets its own beginning, or runs along it.
   const auto surface = surface_of(cylinder(3, true));
@@ -410,6 +471,14 @@ TEST(ToolPath, OffsetIsTheCenterOfABall) {
       if (p.kind == ToolMotion::pass) EXPECT_LT(surface.closest_point(p.contact).distance, 1e-9);
       EXPECT_GE(surface.closest_point(p.position).distance, 0.99 * offset);
       if (p.kind == ToolMotion::pass) EXPECT_LE(surface.closest_point(p.position).distance, 1.001 * offset);
+    }
+    for (std::size_t k = 1; k < path.poses.size(); ++k) {  // the chords are near the path of the center, at edges too
+      const ToolPose &a = path.poses[k - 1], &b = path.poses[k];
+      if (b.kind == ToolMotion::pass && a.kind == ToolMotion::pass)
+        EXPECT_LE(norm(b.position - a.position), 0.1 + 1e-9);
+      for (const double share : {0.25, 0.5, 0.75})
+        EXPECT_GE(surface.closest_point((1 - share) * a.position + share * b.position).distance,
+                  0.99 * offset - path.chord_error);
     }
     const ToolPathMeasures measures = tool_path_measures(surface, path),
                            without = tool_path_measures(surface, tool_path(surface, {.spacing = 0.4, .seed = seed}));

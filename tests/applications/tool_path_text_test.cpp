@@ -102,9 +102,17 @@ TEST(ToolPath, GcodeFollowsThePosesAndIsRapidOnlyAboveTheSurface) {
   refuses(path, {.feed = 800}, "faces sideways or down");
   refuses(path, {.feed = 0}, "feed is 0");
   refuses(path, {.feed = 1, .axes = 4}, "3 or 5 axes");
-  ToolPath torn = path;
-  torn.missing_links = 2;
-  refuses(torn, {.feed = 1, .axes = 5}, "2 missing links");
+  EXPECT_DOUBLE_EQ(path.chord_error, 0.5 / 200);
+  EXPECT_NE(gcode(path, {.feed = 1, .axes = 5}).find("G64 P0.0025"), std::string::npos);
+  EXPECT_NE(gcode(path, {.feed = 1, .axes = 5, .blend = 0}).find("G61\n"), std::string::npos);
+  refuses(path, {.feed = 1, .axes = 5, .blend = -1}, "blend is -1");
+}
+
+TEST(ToolPath, HasNoTextWithMissingLinks) {
+  ToolPath torn = tool_path(surface_of(icosphere(4)), {.spacing = 0.25});
+  for (const std::size_t k : {20, 40}) torn.poses[k].kind = ToolMotion::missing;
+  expect_error<InvalidArgument>([&] { gcode(torn, {.feed = 1, .axes = 5}); }, "2 missing links");
+  expect_error<InvalidArgument>([&] { ros_yaml(torn); }, "2 missing links");
 }
 
 }  // namespace

@@ -142,6 +142,12 @@ ToolPathSeed seed_of(const WholeOptions& options, const Input& input) {
     const SurfacePoint point = point_on_surface(input, *options.line, "--seed-line");
     return LineSeed{curve_point(point, *options.line), vector_of(*options.direction, input, point, "--seed-line")};
   }
+  if (options.feature_angle > 0) {
+    FeatureSeed seed{options.feature_angle};
+    if (const auto& spec = options.feature)
+      seed.near = curve_point(point_on_surface(input, *spec, "--seed-near"), *spec);
+    return seed;
+  }
   if (options.curve.empty()) return AutomaticSeed{};
   return CurveSeed{curve_of(input, options.curve, "--seed-curve"), options.closed};
 }
@@ -223,6 +229,24 @@ void offer_whole(CLI::App& app, WholeOptions& o) {
   auto* curve = add("--seed-curve", o.curve, parse_sources, "POINTS",
                     "Passes parallel to the curve through points: list or file of SPECs");
   app.add_flag("--seed-closed", o.closed, "Close the curve of --seed-curve")->needs(curve);
+  const auto half_turn = [](const std::string& text) {
+    const double angle = parse_degrees(text);
+    if (!(angle >= 0 && angle <= std::numbers::pi))
+      throw std::invalid_argument(fmt::format("'{}' is not between 0 and 180 degrees", text));
+    return angle;
+  };
+  const auto turn = [=](const std::string& text) {
+    const double angle = half_turn(text);
+    if (angle == 0) throw std::invalid_argument("the angle is zero");
+    return angle;
+  };
+  auto* feature =
+      add("--seed-feature", o.feature_angle, turn, "DEG",
+          "Passes parallel to the longest feature edge of each component, where normals turn by DEG or more");
+  add(
+      "--seed-near", o.feature, [](const std::string& text) { return parse_source(text); }, "SPEC",
+      "With --seed-feature: passes parallel to the feature edge nearest to a point")
+      ->needs(feature);
   auto* line = add(
       "--seed-line", o.line, [](const std::string& text) { return parse_source(text); }, "SPEC",
       "Passes parallel to the straight line through a point");
@@ -231,7 +255,7 @@ void offer_whole(CLI::App& app, WholeOptions& o) {
       "Direction of --seed-line: a vector X,Y,Z, or an angle in degrees from the u axis, as in 'ahm trace'");
   line->needs(direction);
   direction->needs(line);
-  std::vector<CLI::Option*> seeds{boundary, plane, curve, line};
+  std::vector<CLI::Option*> seeds{boundary, plane, curve, feature, line};
   for (auto* a : seeds)
     for (auto* b : seeds)
       if (a != b) a->excludes(b);
@@ -240,12 +264,6 @@ void offer_whole(CLI::App& app, WholeOptions& o) {
       "--facing", o.facing, [](const std::string& text) { return parse_direction(text); }, "X,Y,Z",
       "Cover only what faces a direction: 0,0,1 is the upper side of the part. What lies below other parts is\n"
       "covered, too");
-  const auto half_turn = [](const std::string& text) {
-    const double angle = parse_degrees(text);
-    if (!(angle >= 0 && angle <= std::numbers::pi))
-      throw std::invalid_argument(fmt::format("'{}' is not between 0 and 180 degrees", text));
-    return angle;
-  };
   add("--max-angle", o.max_angle, half_turn, "DEG",
       "Largest angle between the normal of the surface and --facing, 0 to 180 (default 45).\n0,0,1 with 90 covers all "
       "that is "
@@ -293,7 +311,7 @@ void run_whole(const InputOptions& input_options, const OutputOptions& output, c
   Journal journal(output.verbosity);
   std::vector<SourceSpec> named = options.curve;
   for (const auto* curve : {&options.inside, &options.outside}) named.insert(named.end(), curve->begin(), curve->end());
-  for (const auto& spec : {source, options.line})
+  for (const auto& spec : {source, options.line, options.feature})
     if (spec) named.push_back(*spec);
   InputOptions opened = with_named_points(input_options, named);
   opened.all_components = true;
@@ -318,7 +336,9 @@ void run_whole(const InputOptions& input_options, const OutputOptions& output, c
         path.uncovered_components == 1 ? "1 component is" : fmt::format("{} components are", path.uncovered_components),
         path.uncovered_components == 1 ? "it" : "them"));
   if (path.missing_links > 0)
-    journal.add_warning(fmt::format("links without a free path: {}; raise or lower --clearance", path.missing_links));
+    journal.add_warning(
+        fmt::format("missing links: {}. No free path leads to the poses of kind 'missing'; raise or lower --clearance",
+                    path.missing_links));
   if (o.spiral && std::ranges::count(path.passes, PassOrigin::spiral, &ToolPass::origin) == 0)
     journal.add_warning("no spiral: nowhere are three or more closed passes around each other; try another seed");
   if (measures.covered < 0.99 || measures.largest_gap > 1.25)

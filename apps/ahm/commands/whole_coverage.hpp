@@ -22,6 +22,8 @@ struct WholeOptions {
   std::vector<SourceSpec> curve;            ///< of the seed
   std::vector<SourceSpec> inside, outside;  ///< closed curves that limit the region
   bool closed = false;
+  double feature_angle = 0;           ///< of the seed, radians; 0: none
+  std::optional<SourceSpec> feature;  ///< a point near the feature edge
   std::optional<SourceSpec> line;
   std::optional<Direction> direction;
   bool zigzag = false;  ///< the default, for completeness

@@ -12,7 +12,7 @@
 namespace ahm::app {
 namespace {
 
-const std::vector<std::string> motions{"pass", "link", "approach", "retreat"};
+const std::vector<std::string> motions{"pass", "link", "approach", "retreat", "missing"};
 
 void write_text(const std::string& path, const std::string& text) {
   io::AtomicFile file(path);
@@ -20,7 +20,7 @@ void write_text(const std::string& path, const std::string& text) {
   file.commit();
 }
 
-/// One row per pose, and an edge between consecutive poses.
+/// One row per pose, and an edge between consecutive poses, except where a link is missing.
 void write_table(const std::string& file, const std::string& format, const PathFileOptions& options,
                  const ToolPathOptions& path_options, const ToolPath& path) {
   std::vector<Index> pass;
@@ -30,7 +30,7 @@ void write_table(const std::string& file, const std::string& format, const PathF
   io::Table table{.title = "tool path by libahm", .text = true};
   for (const ToolPose& pose : path.poses) {
     const auto row = static_cast<Index>(pass.size());
-    if (row > 0) table.edges.push_back({row - 1, row});
+    if (row > 0 && pose.kind != ToolMotion::missing) table.edges.push_back({row - 1, row});
     pass.push_back(pose.pass), kind.push_back(static_cast<std::uint8_t>(pose.kind));
     position.push_back(pose.position), normal.push_back(pose.axis), heading.push_back(pose.travel);
     contact.push_back(pose.contact);
@@ -97,7 +97,6 @@ void write_tool_path(const std::string& file, const std::string& format, const P
   if (extension == ".ngc") {
     GcodeOptions gcode_options = options.gcode;
     gcode_options.feed = options.feed;
-    gcode_options.blend = path_options.chord_error > 0 ? path_options.chord_error : path_options.spacing / 200;
     return write_text(file, gcode(path, gcode_options));
   }
   if (extension == ".yaml") {

@@ -506,7 +506,7 @@ struct Session::Impl {
     for (const bool on_passes : {true, false}) {
       json points = json::array(), pieces = json::array();
       for (const ToolRun& run : tool_runs(path)) {
-        if ((run.kind == ToolMotion::pass) != on_passes) continue;
+        if ((run.kind == ToolMotion::pass) != on_passes || run.kind == ToolMotion::missing) continue;
         pieces.push_back(points.size());
         for (std::size_t k = run.from; k < run.end; ++k) points.push_back(page.to_page(path.poses[k].position));
       }

@@ -138,6 +138,20 @@ class Splitter {
 
 }  // namespace
 
+void BoundingBox::include(const Vec3& p) {
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    low[axis] = std::min(low[axis], p[axis]), high[axis] = std::max(high[axis], p[axis]);
+}
+
+double BoundingBox::diagonal() const { return distance(low, high); }
+Vec3 BoundingBox::center() const { return 0.5 * (low + high); }
+
+BoundingBox bounding_box(const std::vector<Vec3>& points) {
+  BoundingBox box{points.front(), points.front()};
+  for (const Vec3& p : points) box.include(p);
+  return box;
+}
+
 void check_refinement(const FaceMesh& mesh, double longest) {
   double area = 0;
   for (std::size_t f = 0; f < mesh.size(); ++f) area += mesh.area(static_cast<Index>(f));

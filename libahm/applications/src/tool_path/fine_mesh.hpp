@@ -13,6 +13,15 @@
 
 namespace ahm {
 
+struct BoundingBox {
+  Vec3 low, high;
+
+  void include(const Vec3& p);
+  double diagonal() const;
+  Vec3 center() const;
+};
+BoundingBox bounding_box(const std::vector<Vec3>& points);
+
 /// A mesh of the same shape as a coarser one. It has the points of the coarse mesh, followed by others.
 struct Refinement {
   FaceMesh mesh;

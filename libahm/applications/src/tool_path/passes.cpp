@@ -30,12 +30,6 @@ constexpr double max_slope = 0.45;
 /// Passes may not be closer to cut loci than this.
 constexpr double least_distance = 0.5;
 
-MeshPoint between(const MeshPoint& a, const MeshPoint& b, double t) {
-  MeshPoint p{a.face, {}};
-  for (std::size_t c = 0; c < 3; ++c) p.barycentric[c] = (1 - t) * a.barycentric[c] + t * b.barycentric[c];
-  return p;
-}
-
 std::size_t segments(const MeshCurve& curve) { return curve.faces.size(); }
 const MeshPoint& after(const MeshCurve& curve, std::size_t k) { return curve.points[(k + 1) % curve.points.size()]; }
 
@@ -351,6 +345,12 @@ Index common_face(const FaceMesh& mesh, const MeshPoint& a, const MeshPoint& b) 
 
 }  // namespace
 
+MeshPoint between(const MeshPoint& a, const MeshPoint& b, double t) {
+  MeshPoint p{a.face, {}};
+  for (std::size_t c = 0; c < 3; ++c) p.barycentric[c] = (1 - t) * a.barycentric[c] + t * b.barycentric[c];
+  return p;
+}
+
 std::vector<MeshPoint> samples(const FaceMesh& mesh, const MeshCurve& curve, double step) {
   std::vector<MeshPoint> result;
   for (std::size_t k = 0; k < segments(curve); ++k) {
@@ -372,18 +372,22 @@ double curve_length(const FaceMesh& mesh, const MeshCurve& curve) {
   return sum;
 }
 
+void append_path(const FaceMesh& mesh, const exact::GeodesicPath& path, MeshCurve& curve) {
+  for (std::size_t k = 0; k + 1 < path.points.size(); ++k) {
+    const Index face = common_face(mesh, path.points[k], path.points[k + 1]);
+    if (face < 0) continue;  // the same point
+    curve.points.push_back(path.points[k]);
+    curve.faces.push_back(face);
+  }
+}
+
 MeshCurve joined_curve(const PathDomain& domain, std::span<const MeshPoint> points, bool closed) {
   MeshCurve curve;
   curve.closed = closed;
   const std::size_t legs = closed ? points.size() : points.size() - 1;
   for (std::size_t k = 0; k < legs; ++k) {
     const exact::GeodesicPath leg = domain.path(points[k], points[(k + 1) % points.size()]);
-    for (std::size_t i = 0; i + 1 < leg.points.size(); ++i) {
-      const Index face = common_face(domain.mesh, leg.points[i], leg.points[i + 1]);
-      if (face < 0) continue;  // the same point
-      curve.points.push_back(leg.points[i]);
-      curve.faces.push_back(face);
-    }
+    append_path(domain.mesh, leg, curve);
     if (!closed && k + 1 == legs) curve.points.push_back(leg.points.back());
   }
   return curve;

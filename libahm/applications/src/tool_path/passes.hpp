@@ -23,9 +23,15 @@ inline constexpr double shortest_pass = 0.5;
 /// step^2 / (8 d): for seeds 0.002 at the first level, for passes 0.013 at the largest gap.
 inline constexpr double seed_step = 0.125, pass_step = 0.25;
 
+/// The point at a share t of the way between two points of a face.
+exact::MeshPoint between(const exact::MeshPoint& a, const exact::MeshPoint& b, double t);
+
 /// Points on a curve at most `step` apart, including its corners.
 std::vector<exact::MeshPoint> samples(const FaceMesh& mesh, const MeshCurve& curve, double step);
 double curve_length(const FaceMesh& mesh, const MeshCurve& curve);
+
+/// Appends a path to a curve, without its last point. A path of length zero has no segments.
+void append_path(const FaceMesh& mesh, const exact::GeodesicPath& path, MeshCurve& curve);
 
 /// A curve through points of one component in their order, joined by locally shortest paths.
 MeshCurve joined_curve(const PathDomain& domain, std::span<const exact::MeshPoint> points, bool closed);

@@ -55,18 +55,24 @@ struct Rotary {
   }
 };
 
+void check_links(const ToolPath& path) {
+  const auto missing =
+      std::ranges::count_if(path.poses, [](const ToolPose& pose) { return pose.kind == ToolMotion::missing; });
+  if (missing > 0)
+    throw InvalidArgument(
+        "missing_links",
+        "the path has " + detail::counted(missing, "missing link") + ", which a machine would cross in a straight line",
+        "change the clearance, or cover the parts one after the other");
+}
+
 void check(const ToolPath& path, const GcodeOptions& o) {
   if (!(o.feed > 0 && std::isfinite(o.feed)))
     throw InvalidArgument("feed is " + detail::number(o.feed) + "; it must be finite and > 0");
-  if (!(o.blend >= 0 && std::isfinite(o.blend)))
-    throw InvalidArgument("blend is " + detail::number(o.blend) + "; it must be finite and >= 0");
+  if (o.blend && !(*o.blend >= 0 && std::isfinite(*o.blend)))
+    throw InvalidArgument("blend is " + detail::number(*o.blend) + "; it must be finite and >= 0");
   if (o.axes != 3 && o.axes != 5)
     throw InvalidArgument("axes is " + std::to_string(o.axes) + "; machines have 3 or 5 axes");
-  if (path.missing_links > 0)
-    throw InvalidArgument("missing_links",
-                          "the path has " + detail::counted(path.missing_links, "missing link") +
-                              ", which a machine would cross in a straight line",
-                          "change the clearance, or cover the parts one after the other");
+  check_links(path);
   if (o.axes == 5) return;
   for (std::size_t k = 0; k < path.poses.size(); ++k)
     if (path.poses[k].kind == ToolMotion::pass && !(path.poses[k].axis[2] > 0))
@@ -79,12 +85,12 @@ std::string position_words(const Vec3& p, int digits) {
   return " X" + decimals(p[0], digits) + " Y" + decimals(p[1], digits) + " Z" + decimals(p[2], digits);
 }
 
-std::string program_start(const GcodeOptions& o, int digits) {
+std::string program_start(const GcodeOptions& o, double blend, int digits) {
   std::string text = "(tool path by libahm)\n";
   if (o.axes == 5)
     text += "(tool axis: sin A sin C, sin A cos C, cos A; as xyzac-trt, X Y Z is the tool center point)\n";
   text += std::string(o.inches ? "G20" : "G21") + " G17 G40 G80 G90 G94\n";
-  text += o.blend > 0 ? "G64 P" + decimals(o.blend, digits) + "\n" : "G61\n";
+  text += blend > 0 ? "G64 P" + decimals(blend, digits) + "\n" : "G61\n";
   return text;
 }
 
@@ -131,7 +137,7 @@ std::vector<ToolRun> tool_runs(const ToolPath& path) {
       runs.back().end = k + 1;
       continue;
     }
-    const bool follows = k > 0 && poses[k].kind != ToolMotion::pass;
+    const bool follows = k > 0 && poses[k].kind != ToolMotion::pass && poses[k].kind != ToolMotion::missing;
     const bool lifted = poses[k].kind == ToolMotion::retreat || poses[k].kind == ToolMotion::approach ||
                         (poses[k].kind == ToolMotion::link && !runs.empty() && runs.back().lifted);
     runs.push_back({k, k + 1, follows ? k - 1 : k, poses[k].kind, poses[k].pass, lifted});
@@ -147,7 +153,7 @@ std::string gcode(const ToolPath& path, const GcodeOptions& options) {
   constexpr int significant = 8, angle_digits = 5;
   const int digits =
       largest > 0 ? std::clamp(significant - 1 - static_cast<int>(std::floor(std::log10(largest))), 0, 300) : 0;
-  std::string text = program_start(options, digits);
+  std::string text = program_start(options, options.blend.value_or(path.chord_error), digits);
   Rotary rotary;
   bool has_feed = false;
   std::string reached;
@@ -177,6 +183,7 @@ std::string ros_yaml(const ToolPath& path, const RosOptions& options) {
   if (options.frame.empty()) throw InvalidArgument("the frame has no name");
   if (has_control_character(options.frame))
     throw InvalidArgument("the name of the frame contains a line break or another control character");
+  check_links(path);
   const bool stamped = options.message == RosMessage::path;
   std::string text = ros_header(options.frame, 0, 0);
   text += path.poses.empty() ? "poses: []\n" : "poses:\n";

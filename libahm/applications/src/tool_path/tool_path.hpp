@@ -13,6 +13,10 @@ namespace ahm {
 /// @throws InvalidArgument (as `tool_path`)
 FaceMesh region_mesh(const Surface& surface, const ToolPathRegion& region, double spacing);
 
+/// The curves from which the passes start, on the mesh.
+/// @throws InvalidArgument (as `tool_path`)
+std::vector<MeshCurve> seed_curves(const Surface& surface, const PathDomain& domain, const ToolPathOptions& options);
+
 /// The part of a mesh that a closed curve encloses: all parts into which it divides its component, except for the largest.
 /// @param outside  the largest part and the other components instead
 /// @throws InvalidArgument (fault "region_not_enclosed": the curve does not divide its component)

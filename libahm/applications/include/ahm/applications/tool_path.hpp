@@ -41,7 +41,15 @@ struct LineSeed {
   CurvePoint point;  ///< a position is at most half a spacing from the surface, world units
   Vec3 direction;    ///< in space; projected to the surface. At an angle: `Surface::direction`
 };
-using ToolPathSeed = std::variant<AutomaticSeed, PlaneSeed, BoundarySeed, CurveSeed, LineSeed>;
+/// The passes are parallel to a feature edge: sides of triangles at which the normal turns by an angle or more, joined where
+/// exactly two of them meet.
+struct FeatureSeed {
+  double angle;  ///< radians, in (0, pi]
+  /// The nearest feature edge to this point; none: the longest one of each component. A position is at most half a spacing from
+  /// the surface, world units.
+  std::optional<CurvePoint> near = {};
+};
+using ToolPathSeed = std::variant<AutomaticSeed, PlaneSeed, BoundarySeed, CurveSeed, LineSeed, FeatureSeed>;
 
 /// The part of the surface to cover, which fulfills all conditions.
 struct ToolPathRegion {
@@ -96,6 +104,7 @@ enum class ToolMotion {
   link,      ///< from pass to pass, on the surface or lifted
   approach,  ///< down to the start of a pass, from the clearance or, on links around the part, from half of it
   retreat,   ///< from the end of a pass up to there
+  missing,   ///< no link was found: the tool must get here by other means
 };
 
 /// A pose of the tool.
@@ -108,7 +117,7 @@ struct ToolPose {
   std::array<double, 4> quaternion;
   Index pass;  ///< number of the pass; on links, that of the next pass
   ToolMotion kind;
-  double arclength;  ///< length of the path up to this pose, world units
+  double arclength;  ///< length of the path up to this pose, without missing links, world units
 };
 
 /// A pose as a 4 x 4 matrix, row by row. It takes coordinates of the tool (x along the travel, z along the axis) to those of
@@ -136,11 +145,12 @@ struct ToolPath {
   std::vector<ToolPose> poses;  ///< in order of travel
   std::vector<ToolPass> passes;
   double spacing = 0;                       ///< of the options, world units
+  double chord_error = 0;                   ///< of the options, or its default, world units
   double pass_length = 0, link_length = 0;  ///< links: with approach and retreat; world units
   Index surface_links = 0;                  ///< links on the surface
   Index lifted_links = 0;                   ///< links at the clearance, higher, or around the part
-  /// Links that are missing: no path was found that does not cut the surface. The tool
-  /// must move from the last pose of the pass to the next pass by other means.
+  /// Links that are missing: no path was found that does not cut the surface. The tool must move by other means to the poses of
+  /// the kind `ToolMotion::missing`.
   Index missing_links = 0;
   Index uncovered_components = 0;  ///< components of the region without a seed
 };

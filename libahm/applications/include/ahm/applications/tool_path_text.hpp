@@ -7,6 +7,7 @@
 /// \endcode
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,7 +18,8 @@ namespace ahm {
 /// Consecutive motions of one kind. The poses `from` to `end` - 1 are a polyline.
 struct ToolRun {
   std::size_t begin, end;  ///< its poses: those where its motions end
-  /// The pose where its first motion begins: the last one of the previous run, or `begin` for passes and the first approach.
+  /// The pose where its first motion begins: the last one of the previous run, or `begin` for passes, the first approach and
+  /// `ToolMotion::missing`.
   std::size_t from;
   ToolMotion kind;
   Index pass;   ///< number of the pass; on links, that of the next pass
@@ -34,8 +36,9 @@ struct GcodeOptions {
   /// machines with the directions of ISO 841, A and C have the opposite signs.
   int axes = 3;
   bool inches = false;  ///< whether world units are inches (G20) or millimeters (G21)
-  /// Largest deviation from the path by which the machine may blend corners, world units (G64 P); 0: none (G61).
-  double blend = 0;
+  /// Largest deviation from the path by which the machine may blend corners, world units (G64 P). 0: none (G61); without a value:
+  /// the chord error of the path.
+  std::optional<double> blend = {};
 };
 
 /// A path as a program in RS-274/NGC, the dialect of LinuxCNC. Lifted motions are rapid ones (G0), which LinuxCNC runs in
@@ -59,7 +62,8 @@ struct RosOptions {
 
 /// A path as a message of ROS 1, in YAML as `rostopic pub -f` reads it. Orientations take z to the tool axis and x to the
 /// direction of travel. ROS expects meters.
-/// @throws InvalidArgument (a feed that is negative or not finite, a frame that is empty or contains control characters)
+/// @throws InvalidArgument (a feed that is negative or not finite, a frame that is empty or contains control characters, fault
+/// "missing_links": the path has missing links)
 std::string ros_yaml(const ToolPath& path, const RosOptions& options = {});
 
 }  // namespace ahm
