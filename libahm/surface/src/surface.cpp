@@ -12,6 +12,7 @@
 #include "ahm/error.hpp"
 #include "ahm/fields/distance.hpp"
 #include "ahm/maps/straight_line.hpp"
+#include "ahm/surface/detail/face_tree.hpp"
 #include "ahm/surface/directions.hpp"
 #include "ahm/surface/exact/flat_triangles.hpp"
 #include "ahm/surface/polar_map_solver.hpp"
@@ -20,7 +21,7 @@
 #include "ahm/util/small_math.hpp"
 #include "ahm/util/text.hpp"
 #include "ahm/util/vec.hpp"
-#include "search_trees.hpp"
+#include "row_tree.hpp"
 
 namespace ahm {
 
@@ -39,7 +40,7 @@ inline void check_finite(const TangentPoint& point) { check_finite(point.positio
 
 struct Surface::Lazy {
   std::once_flag once;
-  std::optional<FaceTree> tree;
+  std::optional<detail::FaceTree> tree;
   std::atomic<int> row_queries = 0;  ///< number of searches for the nearest row so far
   std::once_flag rows_once;
   std::optional<RowTree> rows;
@@ -94,7 +95,7 @@ ClosestPoint Surface::closest_point(const Vec3& position) const {
   check_finite(position);
   if (faces().size() > 0 && !positions().empty()) {
     std::call_once(lazy_->once, [&] { lazy_->tree.emplace(positions(), faces()); });
-    FaceTree::Hit hit = lazy_->tree->nearest(position);
+    detail::FaceTree::Hit hit = lazy_->tree->nearest(position);
     return {std::move(hit.point), hit.position, hit.distance};
   }
   const Row row = nearest_row(position);

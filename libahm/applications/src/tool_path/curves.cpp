@@ -10,14 +10,8 @@
 #include "ahm/util/vec.hpp"
 
 namespace ahm {
-namespace {
 
 using exact::MeshPoint;
-
-/// Points of a curve that are farther than this from the surface are rejected, in spacings.
-constexpr double largest_curve_distance = 0.5;
-
-}  // namespace
 
 void check_positive(const std::string& name, double value) {
   if (!(value > 0 && std::isfinite(value)))
@@ -52,10 +46,11 @@ SurfaceCurve drawn_curve(const Surface& surface, std::span<const Vec3> positions
 
 MeshCurve on_mesh(const PathDomain& domain, std::span<const Vec3> points, bool closed, double spacing,
                   const std::string& name, std::string_view fault) {
-  const FaceLocator locator(domain.mesh);
+  const MeshTree tree(domain.mesh);
   std::vector<MeshPoint> found;
   for (const Vec3& p : points)
-    if (const auto point = locator.nearest((1 / spacing) * p)) found.push_back(*point);
+    if (const MeshTree::Hit hit = tree.nearest((1 / spacing) * p); hit.distance < largest_curve_distance)
+      found.push_back(hit.point);
   if (found.size() < 2)
     throw InvalidArgument(fault, "the " + name + " curve does not lie in the part that is covered",
                           "choose a curve there");

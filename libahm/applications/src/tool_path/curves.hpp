@@ -11,6 +11,9 @@
 
 namespace ahm {
 
+/// Points of curves that are farther than this from the surface are rejected, in spacings.
+inline constexpr double largest_curve_distance = 0.5;
+
 /// @param name  of the value, for messages
 /// @throws InvalidArgument (not finite, or not > 0)
 void check_positive(const std::string& name, double value);

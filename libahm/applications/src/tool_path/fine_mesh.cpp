@@ -146,6 +146,12 @@ void BoundingBox::include(const Vec3& p) {
 double BoundingBox::diagonal() const { return distance(low, high); }
 Vec3 BoundingBox::center() const { return 0.5 * (low + high); }
 
+double BoundingBox::distance_to(const Vec3& p) const {
+  Vec3 nearest;
+  for (std::size_t axis = 0; axis < 3; ++axis) nearest[axis] = std::clamp(p[axis], low[axis], high[axis]);
+  return distance(nearest, p);
+}
+
 BoundingBox bounding_box(const std::vector<Vec3>& points) {
   BoundingBox box{points.front(), points.front()};
   for (const Vec3& p : points) box.include(p);
@@ -203,79 +209,18 @@ exact::PolyhedralSurface polyhedral(const FaceMesh& mesh) {
           }};
 }
 
-std::array<double, 3> nearest_in_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
-  // The regions that are nearest to the corners, to the sides, and to the interior.
-  const Vec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
-  const double d1 = dot(ab, ap), d2 = dot(ac, ap), d3 = dot(ab, bp), d4 = dot(ac, bp), d5 = dot(ab, cp),
-               d6 = dot(ac, cp);
-  if (d1 <= 0 && d2 <= 0) return {1, 0, 0};
-  if (d3 >= 0 && d4 <= d3) return {0, 1, 0};
-  const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) return {1 - d1 / (d1 - d3), d1 / (d1 - d3), 0};
-  if (d6 >= 0 && d5 <= d6) return {0, 0, 1};
-  const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) return {1 - d2 / (d2 - d6), 0, d2 / (d2 - d6)};
-  const double va = d3 * d6 - d5 * d4;
-  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
-    const double w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-    return {0, 1 - w, w};
-  }
-  const double v = vb / (va + vb + vc), w = vc / (va + vb + vc);
-  return {1 - v - w, v, w};
-}
+MeshTree::MeshTree(const FaceMesh& mesh)
+    : begin_([&] {
+        std::vector<Offset> begin;
+        for (std::size_t f = 0; f <= mesh.size(); ++f) begin.push_back(static_cast<Offset>(3 * f));
+        return begin;
+      }()),
+      tree_(mesh.points, FaceList{begin_, {mesh.faces.front().data(), 3 * mesh.size()}}) {}
 
-/// Faces by the cubes that their bounding boxes, enlarged by the reach, meet.
-struct FaceLocator::Grid {
-  static constexpr int bits = 21;
-  using Key = std::uint64_t;
-
-  double cell;
-  std::vector<std::pair<Key, Index>> entries;
-
-  std::int64_t number(double x) const { return static_cast<std::int64_t>(std::floor(x / cell)); }
-  static Key key(std::int64_t x, std::int64_t y, std::int64_t z) {
-    constexpr Key mask = (Key{1} << bits) - 1;
-    return (static_cast<Key>(x) & mask) << (2 * bits) | (static_cast<Key>(y) & mask) << bits |
-           (static_cast<Key>(z) & mask);
-  }
-};
-
-FaceLocator::FaceLocator(const FaceMesh& mesh, double reach)
-    : mesh_(&mesh), reach_(reach), grid_(std::make_unique<Grid>()) {
-  grid_->cell = 2 * reach;
-  for (std::size_t f = 0; f < mesh.size(); ++f) {
-    std::array<std::int64_t, 3> low{}, high{};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      double least = std::numeric_limits<double>::infinity(), most = -least;
-      for (std::size_t c = 0; c < 3; ++c) {
-        const double x = corner_position(mesh, static_cast<Index>(f), c)[axis];
-        least = std::min(least, x), most = std::max(most, x);
-      }
-      low[axis] = grid_->number(least - reach), high[axis] = grid_->number(most + reach);
-    }
-    for (std::int64_t x = low[0]; x <= high[0]; ++x)
-      for (std::int64_t y = low[1]; y <= high[1]; ++y)
-        for (std::int64_t z = low[2]; z <= high[2]; ++z)
-          grid_->entries.emplace_back(Grid::key(x, y, z), static_cast<Index>(f));
-  }
-  std::sort(grid_->entries.begin(), grid_->entries.end());
-}
-
-FaceLocator::~FaceLocator() = default;
-FaceLocator::FaceLocator(FaceLocator&&) noexcept = default;
-
-std::optional<exact::MeshPoint> FaceLocator::nearest(const Vec3& position) const {
-  const Grid::Key key = Grid::key(grid_->number(position[0]), grid_->number(position[1]), grid_->number(position[2]));
-  std::optional<exact::MeshPoint> best;
-  double least = reach_;
-  for (auto entry = std::lower_bound(grid_->entries.begin(), grid_->entries.end(), std::pair{key, Index{-1}});
-       entry != grid_->entries.end() && entry->first == key; ++entry) {
-    const Index f = entry->second;
-    const exact::MeshPoint point{f, nearest_in_triangle(position, corner_position(*mesh_, f, 0),
-                                                        corner_position(*mesh_, f, 1), corner_position(*mesh_, f, 2))};
-    if (const double away = distance(mesh_->position(point), position); away < least) least = away, best = point;
-  }
-  return best;
+MeshTree::Hit MeshTree::nearest(const Vec3& position) const {
+  const detail::FaceTree::Hit hit = tree_.nearest(position);
+  const std::vector<double>& weights = hit.point.barycentric;
+  return {{hit.point.face, {weights[0], weights[1], weights[2]}}, hit.distance};
 }
 
 }  // namespace ahm

@@ -2,12 +2,10 @@
 /// The domain of tool paths: triangles smaller than the spacing, with exact distances from curves.
 #pragma once
 
-#include <memory>
-#include <optional>
-#include <span>
 #include <vector>
 
 #include "ahm/progress.hpp"
+#include "ahm/surface/detail/face_tree.hpp"
 #include "ahm/surface/exact/exact_map.hpp"
 #include "face_mesh.hpp"
 
@@ -19,6 +17,7 @@ struct BoundingBox {
   void include(const Vec3& p);
   double diagonal() const;
   Vec3 center() const;
+  double distance_to(const Vec3& p) const;
 };
 BoundingBox bounding_box(const std::vector<Vec3>& points);
 
@@ -42,26 +41,24 @@ FaceMesh part_of(const FaceMesh& mesh, const std::vector<bool>& kept);
 /// A mesh as a polyhedral surface, in the same units.
 exact::PolyhedralSurface polyhedral(const FaceMesh& mesh);
 
-/// Finds points of a mesh near positions, with a grid of cubes.
-class FaceLocator {
+/// Finds the point of a mesh that is nearest to a position.
+class MeshTree {
  public:
-  /// @param mesh   must outlive the locator; its sides are about as long as the reach
-  /// @param reach  largest distance of `nearest`
-  explicit FaceLocator(const FaceMesh& mesh, double reach = 0.5);
-  ~FaceLocator();
-  FaceLocator(FaceLocator&&) noexcept;
+  struct Hit {
+    exact::MeshPoint point;
+    double distance;  ///< in space, from the position
+  };
 
-  /// The nearest point of the mesh within the reach; none where there is none.
-  std::optional<exact::MeshPoint> nearest(const Vec3& position) const;
+  /// @param mesh  must outlive the tree
+  explicit MeshTree(const FaceMesh& mesh);
+
+  Hit nearest(const Vec3& position) const;
+  /// The position of the nearest point, faster.
+  Vec3 nearest_position(const Vec3& position) const { return tree_.nearest_position(position); }
 
  private:
-  struct Grid;
-  const FaceMesh* mesh_;
-  double reach_;
-  std::unique_ptr<Grid> grid_;
+  std::vector<Offset> begin_;
+  detail::FaceTree tree_;
 };
-
-/// The nearest point of a triangle, as barycentric coordinates.
-std::array<double, 3> nearest_in_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
 
 }  // namespace ahm

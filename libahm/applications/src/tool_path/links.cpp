@@ -14,13 +14,14 @@ Vec3 any_perpendicular(const Vec3& axis) {
   return normalized(any - dot(any, axis) * axis);
 }
 
-Linker::Linker(const Surface& surface, const PathDomain& domain, const ToolPlacer& placer, double spacing,
+Linker::Linker(const FaceMesh& whole, const MeshTree& part, const PathDomain& domain, const ToolPlacer& placer,
                double clearance)
-    : surface_(surface), domain_(domain), placer_(placer), spacing_(spacing), clearance_(clearance) {
-  BoundingBox box = bounding_box(domain.mesh.points);
-  extent_ = box.diagonal();
-  for (const Vec3& p : surface.positions())
-    if (is_finite(p)) box.include((1 / spacing) * p);
+    : part_(part),
+      domain_(domain),
+      placer_(placer),
+      clearance_(clearance),
+      extent_(bounding_box(domain.mesh.points).diagonal()) {
+  const BoundingBox box = bounding_box(whole.points);
   center_ = box.center();
   outside_ = 1.05 * (box.diagonal() / 2 + clearance + placer.offset());
 }
@@ -131,7 +132,7 @@ std::optional<std::vector<Vec3>> Linker::path_to_sphere(const Spot& spot) const 
 }
 
 double Linker::distance_from_surface(const Vec3& position) const {
-  return surface_.closest_point(spacing_ * position).distance / spacing_;
+  return distance(position, part_.nearest_position(position));
 }
 
 /// Whether a segment keeps its distance from the surface, a quarter of the clearance. From every point, the excess of the distance

@@ -17,9 +17,10 @@ Vec3 any_perpendicular(const Vec3& axis);
 /// Finds links.
 class Linker {
  public:
-  /// @param surface    of the mesh, in world units. @param spacing  one unit of the mesh, world units
-  /// @param clearance  height of lifted links
-  Linker(const Surface& surface, const PathDomain& domain, const ToolPlacer& placer, double spacing, double clearance);
+  /// @param whole, part  the surface that links must not cut. @param domain  of the passes
+  /// @param clearance    height of lifted links
+  Linker(const FaceMesh& whole, const MeshTree& part, const PathDomain& domain, const ToolPlacer& placer,
+         double clearance);
 
   Vec3 lifted(const Spot& spot) const { return spot.position + clearance_ * spot.axis; }
   /// Whether the tool can rise from the surface to a share of the clearance.
@@ -41,10 +42,10 @@ class Linker {
   bool is_free(const Vec3& from, const Vec3& to, double share_from = 1, double share_to = 1) const;
   bool is_free(const std::vector<Vec3>& points) const;
 
-  const Surface& surface_;
+  const MeshTree& part_;
   const PathDomain& domain_;
   const ToolPlacer& placer_;
-  double spacing_, clearance_;
+  double clearance_;
   double extent_ = 0;   ///< diagonal of the bounding box of the region
   Vec3 center_{};       ///< of the bounding box of the surface
   double outside_ = 0;  ///< radius of a sphere around the surface

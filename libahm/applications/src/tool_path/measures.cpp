@@ -14,6 +14,8 @@ using exact::MeshPoint;
 
 /// Distance within which a point counts as covered, and below which a pass covers twice, in spacings.
 constexpr double covered_within = 0.6, double_within = 0.5;
+/// Points of passes that are farther than this from the region do not cover it, in spacings.
+constexpr double off_region = 0.5;
 /// Gaps are measured up to this distance, in spacings.
 constexpr double farthest = 4;
 
@@ -116,7 +118,7 @@ double double_share(const std::vector<PassPoint>& points) {
 
 /// The coverage of all rows. Of several vertices of a row, the one that is covered best counts.
 /// @param of_points  coverage of the points of the mesh of the region
-std::vector<RowCoverage> coverage_of_rows(const Surface& surface, const FaceMesh& region_mesh,
+std::vector<RowCoverage> coverage_of_rows(const Surface& surface, const FaceMesh& whole, const FaceMesh& region_mesh,
                                           const std::vector<RowCoverage>& of_points) {
   std::vector<RowCoverage> of_vertices(to_size(surface.graph().size()), RowCoverage::no_triangle);
   const auto assign = [&](const FaceMesh& mesh, const auto& coverage) {
@@ -126,7 +128,7 @@ std::vector<RowCoverage> coverage_of_rows(const Surface& surface, const FaceMesh
       best = std::min(best, coverage(p));
     }
   };
-  assign(face_mesh(surface), [](std::size_t) { return RowCoverage::outside_region; });
+  assign(whole, [](std::size_t) { return RowCoverage::outside_region; });
   assign(region_mesh, [&](std::size_t p) { return of_points[p]; });
   std::vector<RowCoverage> result;
   for (Index r = 0; r < surface.rows().row_count(); ++r) {
@@ -142,7 +144,8 @@ std::vector<RowCoverage> coverage_of_rows(const Surface& surface, const FaceMesh
 ToolPathMeasures tool_path_measures(const Surface& surface, const ToolPath& path, const ToolPathRegion& region,
                                     double samples) {
   constexpr double step = 0.1;
-  const PathDomain domain(region_mesh(surface, region, path.spacing));
+  const FaceMesh whole = whole_mesh(surface, path.spacing);
+  const PathDomain domain(region_mesh(surface, whole, region, path.spacing));
   ToolPathMeasures result;
   for (std::size_t f = 0; f < domain.mesh.size(); ++f) result.area += domain.mesh.area(static_cast<Index>(f));
   AreaSamples spread(samples);
@@ -151,20 +154,20 @@ ToolPathMeasures tool_path_measures(const Surface& surface, const ToolPath& path
   for (std::size_t f = 0; f < domain.mesh.size(); ++f)
     spread.in_face(static_cast<Index>(f), domain.mesh.area(static_cast<Index>(f)),
                    [&](const MeshPoint& point) { options.targets.push_back(point); });
-  const FaceLocator locator(domain.mesh);
+  const MeshTree tree(domain.mesh);
   std::vector<PassPoint> points = points_of_passes(path, step);
   std::vector<MeshPoint> sources;
   for (PassPoint& point : points)
-    if (const auto on_mesh = locator.nearest(point.position)) {
-      sources.push_back(*on_mesh);
-      point.normal = domain.mesh.area_normal(on_mesh->face);
-      point.component = domain.surface.component(domain.mesh.faces[to_size(on_mesh->face)][0]);
+    if (const MeshTree::Hit hit = tree.nearest(point.position); hit.distance < off_region) {
+      sources.push_back(hit.point);
+      point.normal = domain.mesh.area_normal(hit.point.face);
+      point.component = domain.surface.component(domain.mesh.faces[to_size(hit.point.face)][0]);
     }
   result.area *= path.spacing * path.spacing;
   std::vector<RowCoverage> of_points(domain.mesh.points.size(), RowCoverage::no_pass);
   if (sources.empty()) {
     result.largest_gap = farthest;
-    result.rows = coverage_of_rows(surface, domain.mesh, of_points);
+    result.rows = coverage_of_rows(surface, whole, domain.mesh, of_points);
     return result;
   }
   std::vector<bool> has_pass(domain.mesh.points.size(), false);  // by number of the component
@@ -185,7 +188,7 @@ ToolPathMeasures tool_path_measures(const Surface& surface, const ToolPath& path
   }
   result.covered = map.targets() > 0 ? static_cast<double>(covered) / static_cast<double>(map.targets()) : 0;
   result.double_covered = double_share(points);
-  result.rows = coverage_of_rows(surface, domain.mesh, of_points);
+  result.rows = coverage_of_rows(surface, whole, domain.mesh, of_points);
   return result;
 }
 

@@ -107,15 +107,16 @@ std::array<std::array<double, 4>, 4> pose_matrix(const ToolPose& pose) {
   return {{{x[0], y[0], z[0], p[0]}, {x[1], y[1], z[1], p[1]}, {x[2], y[2], z[2], p[2]}, {0, 0, 0, 1}}};
 }
 
-void add_poses(const Surface& surface, const PathDomain& domain, std::vector<PassCurve> passes,
+void add_poses(const FaceMesh& whole, const PathDomain& domain, std::vector<PassCurve> passes,
                const ToolPathOptions& options, ToolPath& path) {
   const double spacing = options.spacing;
   const auto or_else = [&](double length, double otherwise) { return length > 0 ? length / spacing : otherwise; };
   const double step = or_else(options.step, 0.25), tolerance = or_else(options.chord_error, 0.005);
-  const ToolPlacer placer(surface, domain.mesh, spacing,
+  const MeshTree tree(whole);
+  const ToolPlacer placer(tree, domain.mesh,
                           {step, tolerance, or_else(options.tool_radius, 0.5), options.offset / spacing});
   const double clearance = or_else(options.clearance, 1), max_link = or_else(options.max_link, 3);
-  const Linker linker(surface, domain, placer, spacing, clearance);
+  const Linker linker(whole, tree, domain, placer, clearance);
   path.chord_error = spacing * tolerance;
 
   constexpr double max_poses = 1 << 24;

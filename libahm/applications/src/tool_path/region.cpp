@@ -37,14 +37,14 @@ Vec3 center_of(const Surface& surface, const ToolPathRegion::Disc& disc, double 
                                                         "region_off_surface"));
 }
 
-/// Keeps the faces within a distance in space of the center of a disc. They contain all that its radius reaches.
+/// Keeps the faces whose bounding boxes come within the radius of a disc, in space. They contain all that its radius reaches.
 void keep_near(const Surface& surface, const ToolPathRegion::Disc& disc, double spacing, const FaceMesh& mesh,
                std::vector<bool>& kept) {
   const Vec3 center = center_of(surface, disc, spacing);
   for (std::size_t f = 0; f < mesh.size(); ++f) {
-    const auto corner = [&](std::size_t c) { return mesh.points[to_size(mesh.faces[f][c])]; };
-    const auto nearest = nearest_in_triangle(center, corner(0), corner(1), corner(2));
-    kept[f] = distance(mesh.position({static_cast<Index>(f), nearest}), center) <= disc.radius / spacing;
+    std::vector<Vec3> corners;
+    for (const Index p : mesh.faces[f]) corners.push_back(mesh.points[to_size(p)]);
+    kept[f] = bounding_box(corners).distance_to(center) <= disc.radius / spacing;
   }
 }
 
@@ -52,21 +52,25 @@ void keep_near(const Surface& surface, const ToolPathRegion::Disc& disc, double 
 void keep_disc(const Surface& surface, const ToolPathRegion::Disc& disc, double spacing, const FaceMesh& mesh,
                std::vector<bool>& kept) {
   const PathDomain domain(mesh);
-  const auto center = FaceLocator(domain.mesh).nearest(center_of(surface, disc, spacing));
+  const MeshTree::Hit center = MeshTree(domain.mesh).nearest(center_of(surface, disc, spacing));
   std::fill(kept.begin(), kept.end(), false);
-  if (!center) return;
+  if (center.distance > largest_curve_distance) return;
   exact::ExactOptions options;
   options.radius = disc.radius / spacing;
-  const exact::ExactMap map = exact::exact_map(domain.surface, *center, options);
+  const exact::ExactMap map = exact::exact_map(domain.surface, center.point, options);
   for (std::size_t f = 0; f < mesh.size(); ++f)
     kept[f] = std::ranges::all_of(mesh.faces[f], [&](Index p) { return map.status(Vertex(p)) == Status::ok; });
 }
 
 }  // namespace
 
-FaceMesh region_mesh(const Surface& surface, const ToolPathRegion& region, double spacing) {
+FaceMesh whole_mesh(const Surface& surface, double spacing) {
   FaceMesh mesh = face_mesh(surface);
   for (Vec3& p : mesh.points) p = (1 / spacing) * p;
+  return mesh;
+}
+
+FaceMesh region_mesh(const Surface& surface, FaceMesh mesh, const ToolPathRegion& region, double spacing) {
   const auto keep = [](FaceMesh& of, const std::vector<bool>& kept, const std::string& condition,
                        const std::string& remedy) {
     if (std::ranges::find(kept, true) == kept.end())

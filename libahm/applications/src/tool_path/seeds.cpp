@@ -279,10 +279,10 @@ struct SeedFinder {
  private:
   /// The points of a line around one of them that lie in its component of the region, up to the first gap.
   std::span<const Vec3> part_around(std::span<const Vec3> points, std::size_t at) const {
-    const FaceLocator locator(domain.mesh);
+    const MeshTree tree(domain.mesh);
     const auto component = [&](std::size_t k) {
-      const auto point = locator.nearest((1 / spacing) * points[k]);
-      return point ? domain.surface.component(*point) : -1;
+      const MeshTree::Hit hit = tree.nearest((1 / spacing) * points[k]);
+      return hit.distance < largest_curve_distance ? domain.surface.component(hit.point) : -1;
     };
     const Index own = component(at);
     if (own < 0) return {};

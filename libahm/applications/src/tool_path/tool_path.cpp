@@ -41,7 +41,8 @@ Index count_uncovered(const PathDomain& domain, const std::vector<MeshCurve>& se
 
 ToolPath tool_path(const Surface& surface, const ToolPathOptions& options) {
   check(options);
-  const PathDomain region(region_mesh(surface, options.region, options.spacing));
+  const FaceMesh whole = whole_mesh(surface, options.spacing);
+  const PathDomain region(region_mesh(surface, whole, options.region, options.spacing));
   const FineDomain domain(region);
   const std::vector<MeshCurve> seeds = seed_curves(surface, domain, options);
   if (const double across = options.spacing * bounding_box(domain.mesh.points).diagonal(); options.tool_radius > across)
@@ -51,7 +52,7 @@ ToolPath tool_path(const Surface& surface, const ToolPathOptions& options) {
   ToolPath path;
   path.spacing = options.spacing;
   path.uncovered_components = count_uncovered(domain, seeds);
-  add_poses(surface, domain, make_passes(domain, seeds, phase, options.spiral, options.progress), options, path);
+  add_poses(whole, domain, make_passes(domain, seeds, phase, options.spiral, options.progress), options, path);
   return path;
 }
 

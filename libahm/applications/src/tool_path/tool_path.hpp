@@ -9,9 +9,13 @@
 
 namespace ahm {
 
-/// The region of a surface as a mesh with sides of at most `longest_window_side`, positions divided by the spacing.
+/// The faces of a surface, positions divided by the spacing.
+FaceMesh whole_mesh(const Surface& surface, double spacing);
+
+/// The region of a surface with sides of at most `longest_window_side`.
+/// @param mesh  `whole_mesh` of the surface
 /// @throws InvalidArgument (as `tool_path`)
-FaceMesh region_mesh(const Surface& surface, const ToolPathRegion& region, double spacing);
+FaceMesh region_mesh(const Surface& surface, FaceMesh mesh, const ToolPathRegion& region, double spacing);
 
 /// The curves from which the passes start, on the mesh.
 /// @throws InvalidArgument (as `tool_path`)
@@ -23,7 +27,8 @@ std::vector<MeshCurve> seed_curves(const Surface& surface, const PathDomain& dom
 FaceMesh enclosed_part(const PathDomain& domain, const MeshCurve& curve, bool outside);
 
 /// Puts passes in an order, joins them and computes the poses, in world units.
-void add_poses(const Surface& surface, const PathDomain& domain, std::vector<PassCurve> passes,
+/// @param whole  `whole_mesh` of the surface, which the tool must not cut
+void add_poses(const FaceMesh& whole, const PathDomain& domain, std::vector<PassCurve> passes,
                const ToolPathOptions& options, ToolPath& path);
 
 }  // namespace ahm

@@ -59,8 +59,8 @@ Vec3 SmoothNormals::at(const MeshPoint& point) const {
   return length > 1e-6 * norm(own) ? (1 / length) * sum : normalized(own);
 }
 
-ToolPlacer::ToolPlacer(const Surface& surface, const FaceMesh& mesh, double spacing, const Options& options)
-    : surface_(surface), mesh_(mesh), spacing_(spacing), options_(options), normals_(mesh, options.tool_radius) {}
+ToolPlacer::ToolPlacer(const MeshTree& part, const FaceMesh& mesh, const Options& options)
+    : part_(part), mesh_(mesh), options_(options), normals_(mesh, options.tool_radius) {}
 
 std::optional<Spot> ToolPlacer::at(const MeshPoint& point) const {
   Spot spot{point, mesh_.position(point), {}, normals_.at(point)};
@@ -98,7 +98,7 @@ std::optional<Vec3> ToolPlacer::ball_center(const Vec3& contact, const Vec3& axi
     const double radius = stage * options_.offset / stages;
     center = center + (options_.offset / stages) * axis;
     for (int move = 0;; ++move) {
-      const Vec3 nearest = (1 / spacing_) * surface_.closest_point(spacing_ * center).position;
+      const Vec3 nearest = part_.nearest_position(center);
       const double away = distance(center, nearest);
       if (away >= (1 - ball_tolerance) * radius) break;
       if (move == max_moves || !(away > 0)) return {};

@@ -38,8 +38,8 @@ class ToolPlacer {
     double offset;       ///< radius of a ball whose center is the position of the tool; 0: the tool is on the surface
   };
 
-  /// @param surface  of the mesh, in world units. @param spacing  one unit of the mesh, world units
-  ToolPlacer(const Surface& surface, const FaceMesh& mesh, double spacing, const Options& options);
+  /// @param part  the surface that the tool must not cut. @param mesh  of the curves
+  ToolPlacer(const MeshTree& part, const FaceMesh& mesh, const Options& options);
 
   double offset() const { return options_.offset; }
   /// The tool at a point; none where a ball of the offset does not fit.
@@ -55,9 +55,8 @@ class ToolPlacer {
   void refine(const Spot& from, const Spot& to, int depth, std::vector<Track>& tracks) const;
   std::vector<std::size_t> simplified(const std::vector<Vec3>& path, const Track* axes) const;
 
-  const Surface& surface_;
+  const MeshTree& part_;
   const FaceMesh& mesh_;
-  double spacing_;
   Options options_;
   SmoothNormals normals_;
 };

@@ -1,46 +1,15 @@
 /// \file
-/// Search trees for the row, and for the point of a mesh, nearest to a position.
+/// A search tree for the point of a mesh nearest to a position. Not part of the public interface.
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <span>
 #include <vector>
 
-#include "ahm/surface/row_map.hpp"
 #include "ahm/surface/surface_point.hpp"
 #include "ahm/types.hpp"
 
-namespace ahm {
-
-/// A k-d tree over the rows that have a vertex. It returns bit for bit the result of a scan over all rows: of rows at equal
-/// distances that of the lowest vertex. Library trees compare squared distances, so their result may differ. Immutable.
-class RowTree {
- public:
-  /// O(n log n). Skips positions that are not finite. @param positions  position of each row
-  RowTree(const RowMap& rows, std::span<const Vec3> positions, Index vertices);
-
-  /// The nearest row; row 0 where the tree is empty. @param position  finite
-  Row nearest(const Vec3& position) const;
-
- private:
-  struct Entry {
-    Vec3 position;
-    Index vertex;
-    Row row;
-  };
-  struct Best {
-    double distance;
-    const Entry* entry;
-  };
-
-  static void visitor(const Entry& entry, const Vec3& position, Best& best);
-  void build(std::size_t begin, std::size_t end);
-  void search(std::size_t begin, std::size_t end, const Vec3& position, Best& best) const;
-
-  std::vector<Entry> entries_;
-  std::vector<std::uint8_t> axis_;  ///< axis along which the middle entry of a part splits the part
-};
+namespace ahm::detail {
 
 /// A bounding-box tree over the triangles of the faces (polygons are split into fans from their first corner). Immutable. Both arguments
 /// must outlive it.
@@ -58,6 +27,8 @@ class FaceTree {
 
   /// The nearest point of the faces. @param position  finite
   Hit nearest(const Vec3& position) const;
+  /// The position of the nearest point, faster.
+  Vec3 nearest_position(const Vec3& position) const;
 
  private:
   struct Piece {
@@ -78,6 +49,7 @@ class FaceTree {
 
   struct Search;
 
+  Search search_from(const Vec3& position) const;
   const Vec3& corner(const Piece& piece, int k) const;
   void build(std::size_t begin, std::size_t end);
   template <class Visitor>
@@ -90,4 +62,4 @@ class FaceTree {
   std::vector<Box> boxes_;
 };
 
-}  // namespace ahm
+}  // namespace ahm::detail
