@@ -240,6 +240,13 @@ def test_a_tool_path_covers_a_box_and_its_top():
     assert path.measures["covered"] > 0.99 and path.measures["double_covered"] < 0.03
     assert np.allclose(np.sum(path.axis * path.travel, axis=1), 0, atol=1e-9)
     assert set(path.kind) <= {"pass", "link", "approach", "retreat"}
+    for near, length in (([2, 0, 2.0], 4), ([4, 1.5, 0.1], 3)):
+        edge = ahm.tool_path(box, 0.3, feature=1.5, near=near)
+        assert [p.length for p in edge.passes if p.kind == "seed"] == pytest.approx([length])
+    for extra, message in (({"feature": 0}, "in \\(0, 180\\]"), ({"near": [0, 0, 0.0]}, "near: has no effect without feature"),
+                           ({"feature": 1.5, "near": [0, 0, 9.0]}, "the point near the feature edge is 7")):
+        with pytest.raises(ValueError, match=message):
+            ahm.tool_path(box, 0.3, **extra)
     top = ahm.tool_path(box, 0.3, facing=[0, 0, 1], plane=([0, 1, 0], [0, 1, 0]), one_way=True)
     on_passes = np.concatenate([np.arange(p.begin, p.end) for p in top.passes])
     assert np.allclose(top.position[on_passes, 2], 2) and (np.abs(top.travel[on_passes, 0]) > 0.99).all()
@@ -278,7 +285,7 @@ def test_tool_paths_start_at_lines_and_cover_discs():
         assert math.pi * 8.6**2 < disc.measures["area"] < math.pi * 9**2  # whole triangles with sides up to 0.4 spacings
     for arguments, message in (({"line": ([20, 15, 9.0], [1, 0, 0])}, "the point of the seed line is 9 from the surface"),
                                ({"line": (row, [0, 0, 1])}, "perpendicular to the surface"),
-                               ({"line": (row, 1.0), "seed": "boundary"}, "use one of seed, plane, curve and line"),
+                               ({"line": (row, 1.0), "seed": "boundary"}, "use one of seed, plane, curve, line and feature"),
                                ({"line": (5000, 1.0)}, r"line\[0\]: row 5000 is out of range"),
                                ({"line": (row, math.nan)}, r"line\[1\]"),
                                ({"center": [20, 15, 9.0], "radius": 5}, "the center of the region is 9 from the surface"),
@@ -315,8 +322,14 @@ def test_tool_paths_are_programs_and_messages():
     assert np.linalg.norm(path.position - path.contact, axis=1).max() > 0.19
     program = path.gcode(800, axes=5).splitlines()
     assert program[-1] == "M2" and sum("F800" in line for line in program) == 1
+    assert "G64 P0.0025" in program[3] and path.chord_error == 0.0025  # a 200th of the spacing
+    assert "G61" in path.gcode(800, axes=5, blend=0).splitlines()
     with pytest.raises(ValueError, match="faces sideways or down"):
         path.gcode(800)
+    torn = path._replace(kind=np.where(np.arange(len(path.kind)) == 30, "missing", path.kind))
+    for write in (lambda: torn.gcode(800, axes=5), torn.ros_yaml):
+        with pytest.raises(ValueError, match="1 missing link"):
+            write()
     yaml = pytest.importorskip("yaml")
     for message in ("PoseArray", "Path"):
         documents = list(yaml.safe_load_all(path.ros_yaml(message, frame='the "part"', feed=60)))

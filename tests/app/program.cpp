@@ -203,7 +203,7 @@ std::vector<Row> read_csv(const std::string& file) {
     rows.emplace_back();
     for (std::size_t c = 0; c < std::min(words.size(), names.size()); ++c) {
       rows.back().numbers[names[c]] = std::strtod(words[c].c_str(), nullptr);
-      if (names[c] == "status") rows.back().status = words[c];
+      if (names[c] == "status" || names[c] == "kind") rows.back().status = words[c];
     }
   }
   return rows;

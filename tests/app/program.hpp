@@ -77,7 +77,7 @@ nlohmann::json summary(const std::string& command);
 /// A row of a CSV file. Words are NaN or 0 in `numbers`.
 struct Row {
   std::map<std::string, double> numbers;
-  std::string status;
+  std::string status;  ///< of the column status or kind
 
   double operator[](const std::string& column) const { return numbers.at(column); }
   Vec3 position() const { return {numbers.at("x"), numbers.at("y"), numbers.at("z")}; }

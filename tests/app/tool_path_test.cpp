@@ -122,6 +122,65 @@ TEST_F(Coverage, CoversAWholePart) {
   }
 }
 
+/// A box around the origin.
+std::pair<Points, Faces> box_around(double size) {
+  Points points;
+  for (int k = 0; k < 8; ++k)
+    points.push_back({size * ((k & 1) - 0.5), size * ((k & 2) / 2 - 0.5), size * (k / 4 - 0.5)});
+  return {points, {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}};
+}
+
+// No link leads to a box in a box.
+TEST_F(Coverage, MarksMissingLinks) {
+  auto [points, faces] = box_around(3);
+  const auto [inner, inner_faces] = box_around(1);
+  for (const std::vector<int>& face : inner_faces)
+    faces.push_back({face[0] + 8, face[1] + 8, face[2] + 8, face[3] + 8});
+  points.insert(points.end(), inner.begin(), inner.end());
+  write("nested.obj", obj(points, faces));
+  const auto json = summary("coverage nested.obj --whole --spacing 0.4 -o path.csv");
+  expect_values(json, {{"/links/missing", 1}});
+  const auto rows = read_csv("path.csv");
+  double length = 0, missing = 0;
+  for (std::size_t k = 1; k < rows.size(); ++k) {
+    const bool is_missing = rows[k].status == "missing";
+    missing += is_missing;
+    if (!is_missing)
+      length +=
+          std::hypot(rows[k]["x"] - rows[k - 1]["x"], rows[k]["y"] - rows[k - 1]["y"], rows[k]["z"] - rows[k - 1]["z"]);
+    EXPECT_NEAR(rows[k]["arclength"], length, 1e-9 * length);
+  }
+  EXPECT_EQ(missing, 1);
+  const std::string ply = (run_ok("coverage nested.obj --whole --spacing 0.4 -o path.ply"), read_text("path.ply"));
+  EXPECT_TRUE(has(ply, "element edge " + std::to_string(rows.size() - 2) + "\n"));
+  expect_refused("coverage nested.obj --whole --spacing 0.4",
+                 {{"-o path.ngc --axes 5 --feed 800", 1, {"1 missing link"}}, {"-o path.yaml", 1, {"1 missing link"}}});
+}
+
+TEST_F(Coverage, IsParallelToAFeatureEdge) {
+  const auto [points, faces] = box_around(2);
+  write("box.obj", obj(points, faces));
+  for (const auto& [near, axis] : std::map<std::string, std::string>{{"0,1,1", "x"}, {"-1,0.2,-1", "y"}}) {
+    const auto json =
+        summary("coverage box.obj --whole --spacing 0.3 --seed-feature 80 --seed-near " + near + " -o path.csv");
+    EXPECT_GT(number(json, "/covered"), 0.99);
+    const auto rows = read_csv("path.csv");
+    for (const auto& pass : json.at("passes"))
+      if (pass.at("kind") == "seed") {
+        EXPECT_NEAR(pass.at("length").get<double>(), 2, 1e-9);
+        const std::size_t first = pass.at("first"), last = first + pass.at("points").get<std::size_t>() - 1;
+        EXPECT_NEAR(std::abs(rows[last][axis] - rows[first][axis]), 2, 1e-9);
+      }
+  }
+  expect_refused(
+      "coverage box.obj --whole --spacing 0.3 -o path.csv",
+      {{"--seed-feature 100", 1, {"nowhere by 100 degrees"}},
+       {"--seed-feature 0", 2, {"the angle is zero"}},
+       {"--seed-near 1,1,1", 2, {"--seed-near requires --seed-feature"}},
+       {"--seed-feature 80 --seed-near 9,9,9", 1, {"the point near the feature edge is", "from the surface"}},
+       {"--seed-feature 80 --seed-boundary", 2, {"excludes"}}});
+}
+
 // A scan of a sphere without a cap, with outliers and a point without return.
 TEST_F(Coverage, GivesTheReasonOfEveryRowOfAScan) {
   Points scan;

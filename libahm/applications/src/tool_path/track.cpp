@@ -89,18 +89,23 @@ std::vector<Track> ToolPlacer::tracks(const MeshCurve& curve) const {
   return {std::move(track)};
 }
 
-/// The center of a ball that touches the surface from above, near a point. The ball grows there, and moves away from the
-/// surface where it would intersect. None: it does not fit.
+/// The center of a ball that touches the surface from above, near a point. Where the ball along the axis would intersect the
+/// surface, a small ball grows and moves away from it. None: it does not fit.
 std::optional<Vec3> ToolPlacer::ball_center(const Vec3& contact, const Vec3& axis) const {
   constexpr int stages = 8, max_moves = 40;
+  const auto fits = [&](const Vec3& center, const Vec3& nearest, double radius) {
+    return distance(center, nearest) >= (1 - ball_tolerance) * radius;
+  };
+  const Vec3 upright = contact + options_.offset * axis;
+  if (fits(upright, part_.nearest_position(upright), options_.offset)) return upright;  // it contains the smaller ones
   Vec3 center = contact;
   for (int stage = 1; stage <= stages; ++stage) {
     const double radius = stage * options_.offset / stages;
     center = center + (options_.offset / stages) * axis;
     for (int move = 0;; ++move) {
       const Vec3 nearest = part_.nearest_position(center);
+      if (fits(center, nearest, radius)) break;
       const double away = distance(center, nearest);
-      if (away >= (1 - ball_tolerance) * radius) break;
       if (move == max_moves || !(away > 0)) return {};
       center = nearest + (radius / away) * (center - nearest);
     }
