@@ -123,7 +123,7 @@ TEST(ToolPath, CountsLinksThatAreMissing) {
   EXPECT_EQ(path.missing_links, 1);
   EXPECT_EQ(path.surface_links + path.lifted_links + path.missing_links, std::ssize(path.passes) - 1);
   EXPECT_GE(tool_path_measures(surface, path).covered, 0.99);
-  // One pose says so. The length of the path goes on without the jump, and no run joins the two ends.
+  // One pose marks it. The length of the path does not include the jump, and no run joins the two ends.
   double length = 0;
   for (std::size_t k = 1; k < path.poses.size(); ++k) {
     const bool is_missing = path.poses[k].kind == ToolMotion::missing;

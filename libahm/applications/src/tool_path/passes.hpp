@@ -23,7 +23,7 @@ inline constexpr double shortest_pass = 0.5;
 /// step^2 / (8 d): for seeds 0.002 at the first level, for passes 0.013 at the largest gap.
 inline constexpr double seed_step = 0.125, pass_step = 0.25;
 
-/// The point at a share t of the way between two points of a face.
+/// The point at the share t from the first to the second of two points of a face.
 exact::MeshPoint between(const exact::MeshPoint& a, const exact::MeshPoint& b, double t);
 
 /// Points on a curve at most `step` apart, including its corners.
