@@ -35,7 +35,7 @@ from ._local_maps import LocalMaps as _Maps, local_maps
 from ._meshes import TriangleMesh
 from ._options import checked
 from ._progress import Progress
-from .typing import SurfaceLike
+from .typing import SurfaceLike, Vector
 
 torch: Any = importlib.import_module("torch")  # Any: checkers of types need not read torch
 
@@ -43,9 +43,13 @@ __all__ = ["Edges", "LocalMaps", "Operators", "Sampled", "Traced", "distance", "
 
 
 class Edges(NamedTuple):
-    """The entries of local maps as directed edges, from the neighbor j to the source i. Returned by `edges`."""
+    """The entries of local maps as directed edges, from the neighbor j to the source i. Returned by `edges`.
+
+    `edge_index` are coordinates of a sparse matrix (COO); `indptr` and `edge_index[0]` are its compressed rows (CSR).
+    """
 
     edge_index: Any  #: (2, e) int64: rows of the neighbors, rows of the sources
+    indptr: Any  #: (n + 1,) int64: the edges of source i are those from indptr[i] to indptr[i + 1] - 1; none where i is no source
     log: Any  #: (e, 2) float32 (or float64, as all below): coordinates of j in the frame of i, world units
     transport: Optional[Any]  #: (e,) complex64: times u + iv of a vector at j, in the frame of j, is u + iv in the frame of i
     distance: Any  #: (e,) float32: geodesic distance, world units
@@ -54,11 +58,16 @@ class Edges(NamedTuple):
 
 
 def edges(maps: _Maps, dtype: Any = torch.float32) -> Edges:
-    """The entries of local maps as tensors on the CPU, with the edges of each source nearest first. Every row is its own first neighbor.
+    """The entries of local maps as tensors on the CPU, in the order of the rows of their sources, those of one source nearest first.
 
-    maps : local maps of rows, from `ahm.local_maps`. `Edges.transport` and `Edges.quality` are None if they have none.
+    maps : local maps of rows, from `ahm.local_maps`. `Edges.transport` and `Edges.quality` are None if they have none. Every source is
+        its own first neighbor.
     dtype : torch.float32, or torch.float64. With float64 all tensors except `edge_index` share the memory of the arrays of `maps`, without
         copies: a change of one changes the other. `transport` is then a view with its conjugate bit set (`resolve_conj` makes a copy).
+        If the maps have `sources`, `indptr` is new; if these do not ascend, all tensors are copies.
+
+    The columns of `indptr` and `edge_index[0]` are in order of distance. `torch.sparse_csr_tensor` requires ascending ones:
+    `torch.sparse_coo_tensor(e.edge_index.flip(0), e.weight, (n, n)).to_sparse_csr()` sorts them, in a copy.
 
     `transport` is the inverse of `ahm.LocalMaps.transport`, because messages go from the neighbor to the source. Rows without a
     vertex have no edges, and no number is NaN (on surfaces whose sizes single precision holds).
@@ -72,14 +81,21 @@ def edges(maps: _Maps, dtype: Any = torch.float32) -> Edges:
         raise ValueError(f"maps: expected maps of dimension 2, got log of shape {maps.log.shape}")
     if maps.transport is not None and maps.transport.ndim != 2:
         raise ValueError("maps: the surface is not orientable, so transports are no complex numbers; use transport=False")
+    ends, indptr = maps.edge_index(), maps.indptr
+    kept: Any = slice(None)
+    if len(maps) != maps.columns or (np.diff(maps.sources) != 1).any():  # `indptr` is by source, not by row
+        if (np.diff(maps.sources) < 0).any():
+            kept = np.argsort(ends[1], kind="stable")
+            ends = np.take(ends, kept, axis=1)
+        indptr = np.searchsorted(ends[1], np.arange(maps.columns + 1))
+    turns = None if maps.transport is None else maps.transport.view(np.complex128)[:, 0]
     log, distance, weight, quality, transport = (
-        None if values is None else torch.from_numpy(values).to(dtype)  # float64: no copy
-        for values in (maps.log, maps.distance, maps.weight, maps.quality, maps.transport))
-    if transport is not None:
-        transport = torch.view_as_complex(transport).conj()
-        if dtype is torch.float32:
-            transport = transport.resolve_conj()
-    return Edges(torch.from_numpy(maps.edge_index()), log, transport, distance, weight, quality)
+        None if values is None else torch.from_numpy(values[kept]) for values in (maps.log, maps.distance, maps.weight, maps.quality, turns))
+    transport = None if transport is None else transport.conj()
+    if dtype is torch.float32:
+        log, distance, weight, quality = (None if values is None else values.float() for values in (log, distance, weight, quality))
+        transport = None if transport is None else transport.to(torch.complex64).resolve_conj()
+    return Edges(torch.from_numpy(ends), torch.from_numpy(indptr), log, transport, distance, weight, quality)
 
 
 class Operators(NamedTuple):
@@ -140,9 +156,13 @@ class LocalMaps:
 
     It reads `data.pos`, (n, 3) positions, and `data.face`, (3, f) triangles as in PyTorch Geometric; without `face`, or if it is None,
     the points are a point cloud. It sets `edge_index`, `log`, `transport`, `distance` and `weight`, tensors as in `Edges`, on the
-    device of `data.pos`, and with quality=True also `quality`.
+    device of `data.pos`, and with quality=True also `quality`. The edges are in the order of their sources, so that
+    `torch.searchsorted(data.edge_index[1], torch.arange(len(data.pos) + 1))` are the offsets of compressed rows, also of a batch, which
+    could not concatenate offsets.
 
     radius, k, method, quality, threads : as in `ahm.local_maps`.
+    sources : rows, or the name of an attribute of the object that contains them; None: all rows. The other rows get no neighbors: they
+        are the target of no edge, and remain neighbors of the sources. Repeated rows count once.
     cache : folder, which is created; None: no cache. One file per object holds its edges, under a hash of the positions, the triangles,
         the options that change numbers, and the version of ahm. Damaged files are computed again. Several processes may share the folder.
         Nothing is ever deleted.
@@ -151,38 +171,46 @@ class LocalMaps:
     `ahm.PointCloud` and `ahm.local_maps`. OSError (files of the cache that cannot be read or written).
     """
 
-    def __init__(self, radius: Optional[float] = None, k: Optional[int] = None, *, method: str = "auto", quality: bool = False,
-                 threads: int = 0, cache: Union[None, str, "os.PathLike[str]"] = None) -> None:
+    def __init__(self, radius: Optional[float] = None, k: Optional[int] = None, *, sources: Union[None, str, Vector] = None,
+                 method: str = "auto", quality: bool = False, threads: int = 0,
+                 cache: Union[None, str, "os.PathLike[str]"] = None) -> None:
         if radius is None and k is None:
             raise ValueError("radius: missing; pass a radius or k")
         self._options = dict(checked(radius=radius, k=k, quality=quality, threads=threads),
                              method=arguments.choice(method, "method", ("auto", "polar", "heat")))
+        self._sources = sources
         self._cache = None if cache is None else DiskCache(cache)
 
     def __call__(self, data: Any) -> Any:
         positions = data.pos.detach().cpu().double().numpy()
         faces = getattr(data, "face", None)
-        for name, value in self._edges(positions, None if faces is None else faces.detach().cpu().numpy().T).items():
+        sources = getattr(data, self._sources) if isinstance(self._sources, str) else self._sources
+        if sources is not None:
+            sources = sources.cpu() if torch.is_tensor(sources) else sources
+            sources = np.unique(arguments.rows(sources, "sources", len(positions)))
+        for name, value in self._edges(positions, None if faces is None else faces.detach().cpu().numpy().T, sources).items():
             setattr(data, name, torch.from_numpy(value).to(data.pos.device))
         return data
 
-    def _edges(self, positions: np.ndarray, faces: Optional[np.ndarray]) -> Dict[str, np.ndarray]:
+    def _edges(self, positions: np.ndarray, faces: Optional[np.ndarray], sources: Optional[np.ndarray]) -> Dict[str, np.ndarray]:
         key = ""
         if self._cache:
             numbers = {name: value for name, value in self._options.items() if name != "threads"}
-            key = key_of(f"local maps {sorted(numbers.items())}", positions, faces)
+            key = key_of(f"local maps {sorted(numbers.items())}", positions, faces, sources)
             stored = self._cache.get(key)
             if stored is not None:
                 return stored
         surface = PointCloud(positions) if faces is None else TriangleMesh(positions, faces)
-        made = edges(local_maps(surface, **self._options))._asdict()
-        found = {name: value.numpy() for name, value in made.items() if value is not None}
+        made = edges(local_maps(surface, sources=sources, **self._options))._asdict()
+        found = {name: value.numpy() for name, value in made.items() if value is not None and name != "indptr"}
         if self._cache:
             self._cache.put(key, found)
         return found
 
     def __repr__(self) -> str:
         options = [f"{name}={value!r}" for name, value in self._options.items()]
+        if self._sources is not None:
+            options.append(f"sources={self._sources!r:.60}")
         if self._cache:
             options.append(f"cache={str(self._cache.folder)!r}")
         return f"ahm.torch.LocalMaps({', '.join(options)})"

@@ -45,6 +45,68 @@ def test_edges_in_double_precision_share_the_memory_of_the_maps(sphere):
         ahm.torch.edges(maps, torch.float16)
 
 
+def test_compressed_rows_and_coordinates_are_one_matrix(sphere):
+    """The offsets share the memory of the maps of all rows. As matrices both forms are that of scipy."""
+    maps = ahm.local_maps(sphere, 0.4)
+    found = ahm.torch.edges(maps)
+    assert found.indptr.data_ptr() == maps.indptr.ctypes.data and found.indptr.dtype == torch.int64
+    n = len(sphere)
+    assert torch.equal(torch.repeat_interleave(torch.arange(n), found.indptr.diff()), found.edge_index[1])
+    assert torch.equal(torch.searchsorted(found.edge_index[1], torch.arange(n + 1)), found.indptr)
+    matrix = torch.sparse_coo_tensor(found.edge_index.flip(0), found.weight, (n, n)).to_sparse_csr()
+    assert torch.equal(matrix.crow_indices(), found.indptr)
+    np.testing.assert_allclose(matrix.to_dense(), maps.csr("weight").toarray(), rtol=1e-6)
+
+
+@pytest.mark.parametrize("kind", ["mesh", "cloud"])
+def test_maps_of_some_sources_are_those_of_all_restricted(sphere, kind):
+    """In any order. The other rows have no edges, and compressed rows still have an offset for each of them."""
+    surface = sphere if kind == "mesh" else ahm.PointCloud(sphere.points)
+    options = dict(radius=0.4, method="polar", quality=True)
+    whole = ahm.torch.edges(ahm.local_maps(surface, **options), torch.float64)
+    chosen = np.random.default_rng(1).choice(len(surface), 60, replace=False)
+    for sources in (chosen, np.sort(chosen), chosen[:0], np.arange(len(surface))):
+        found = ahm.torch.edges(ahm.local_maps(surface, sources=sources, **options), torch.float64)
+        kept = torch.from_numpy(np.isin(whole.edge_index[1], sources))
+        assert torch.equal(found.edge_index, whole.edge_index[:, kept])
+        assert torch.equal(found.indptr.diff(), whole.indptr.diff() * torch.from_numpy(np.isin(np.arange(len(surface)), sources)))
+        for name in ("log", "transport", "distance", "weight", "quality"):
+            torch.testing.assert_close(getattr(found, name), getattr(whole, name)[kept], rtol=0, atol=0)
+
+
+def test_maps_by_heat_depend_on_other_sources_by_the_margin_only(sphere):
+    """Sources share patches, whose ends differ."""
+    options = dict(radius=0.4, method="heat")
+    whole, some = ahm.local_maps(sphere, **options), ahm.local_maps(sphere, sources=[600, 7, 12], **options)
+    for axis in "uv":
+        expected, found = whole.csr(axis).toarray()[[600, 7, 12]], some.csr(axis).toarray()
+        np.testing.assert_allclose(found, expected, atol=2e-4 * 0.4)
+
+
+def test_a_transform_takes_sources(sphere, tmp_path, computed):
+    """As rows, or from an attribute of each object. The cache distinguishes them."""
+    chosen = [7, 3, 11, 3]
+    expected = ahm.torch.edges(ahm.local_maps(sphere, k=8, sources=[3, 7, 11]))
+    for sources in (chosen, np.array(chosen), torch.tensor(chosen)):
+        found = ahm.torch.LocalMaps(k=8, sources=sources)(as_data(sphere.points, sphere.faces))
+        assert_same(found, expected)
+        assert found.edge_index[1].tolist() == 8 * [3] + 8 * [7] + 8 * [11]
+    data = as_data(sphere.points, sphere.faces)
+    data.seeds = torch.tensor(chosen)
+    assert_same(ahm.torch.LocalMaps(k=8, sources="seeds", cache=tmp_path)(data), expected)
+    computed.clear()
+    assert_same(ahm.torch.LocalMaps(k=8, sources=chosen, cache=tmp_path)(as_data(sphere.points, sphere.faces)), expected)
+    assert len(computed) == 0
+    for count, sources in enumerate((None, [3, 7], [])):
+        data = ahm.torch.LocalMaps(k=8, sources=sources, cache=tmp_path)(as_data(sphere.points, sphere.faces))
+        assert len(computed) == count + 1 and data.edge_index.shape == (2, 8 * (len(sphere) if sources is None else len(sources)))
+    for bad, error, text in (([0, 642], ValueError, r"sources\[1\]: row 642 is out of range"), ([0.5], TypeError, "sources: rows"),
+                             ("seeds", AttributeError, "seeds")):
+        with pytest.raises(error, match=text):
+            ahm.torch.LocalMaps(k=8, sources=bad)(as_data(sphere.points, sphere.faces))
+    assert "sources=[7, 3, 11, 3]" in repr(ahm.torch.LocalMaps(k=8, sources=chosen))
+
+
 def test_quality_is_that_of_the_maps(sphere):
     maps = ahm.local_maps(sphere, 0.4, quality=True)
     quality = ahm.torch.edges(maps).quality
