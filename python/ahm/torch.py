@@ -103,6 +103,9 @@ class Operators(NamedTuple):
 
     mass: Any  #: (n,) area of every row
     laplacian: Any  #: (n, n) sparse: (L u)_i = sum_j w_ij (u_i - u_j)
+    #: (n, n) sparse, complex64, Hermitian, positive semi-definite: (C x)_i = sum_j w_ij (x_i - R_ij x_j) for vectors x_i = u + iv in the frame
+    #: of row i, with R_ij the parallel transport from j to i. Of surfaces that are not orientable: (2 n, 2 n), real, for u and v of each row
+    connection_laplacian: Any
     grad_x: Any  #: (n, n) sparse: component of the gradient along the x axis of the frame of each row
     grad_y: Any  #: (n, n) sparse: component along the y axis
     frames: Any  #: (n, 3, 3) x axis, y axis and normal of every row in space
@@ -115,6 +118,9 @@ def operators(surface: SurfaceLike, k_eig: int = 128, *, threads: int = 0, progr
 
     surface : a mesh or a cloud. Every row must have a vertex of its own.
     k_eig, threads, progress : as in `ahm.operators`.
+
+    PyTorch multiplies the sparse matrices with dense tensors, `torch.sparse.mm(ops.grad_x, values)`, and differentiates by these. The
+    connection Laplacian takes complex ones: `torch.sparse.mm(ops.connection_laplacian, torch.complex(u, v))`.
 
     >>> import ahm, ahm.torch
     >>> ops = ahm.torch.operators(ahm.TriangleMesh(*ahm.shapes.sphere(2)), k_eig=8)
@@ -139,16 +145,18 @@ def operators(surface: SurfaceLike, k_eig: int = 128, *, threads: int = 0, progr
         raise ValueError("surface: this one has no frames in space; use a mesh or a cloud")
 
     def dense(numbers: Any) -> Any:
-        return torch.from_numpy(np.ascontiguousarray(numbers, np.float32))
+        return torch.from_numpy(np.ascontiguousarray(numbers, np.complex64 if np.iscomplexobj(numbers) else np.float32))
 
     def sparse(matrix: Any) -> Any:
-        rows = matrix[vertex][:, vertex].tocoo()
+        width = matrix.shape[0] // n  # numbers per row: two in a real matrix of vectors
+        order = (vertex[:, None] * width + np.arange(width)).ravel()
+        rows = matrix[order][:, order].tocoo()
         place = torch.from_numpy(np.stack([rows.row, rows.col]).astype(np.int64))
-        return torch.sparse_coo_tensor(place, dense(rows.data), (n, n)).coalesce()
+        return torch.sparse_coo_tensor(place, dense(rows.data), rows.shape).coalesce()
 
     along_x, along_y = (sparse(matrix / unit) for matrix in made.gradient)
-    return Operators(dense(made.mass.diagonal()[vertex] * unit**2), sparse(made.laplacian), along_x, along_y,
-                     dense(frames[vertex]), dense(values / unit**2), dense(vectors[vertex] / unit))
+    return Operators(dense(made.mass.diagonal()[vertex] * unit**2), sparse(made.laplacian), sparse(made.connection_laplacian),
+                     along_x, along_y, dense(frames[vertex]), dense(values / unit**2), dense(vectors[vertex] / unit))
 
 
 class LocalMaps:

@@ -235,6 +235,51 @@ def test_operators_are_by_rows_in_world_units(sphere):
         torch.testing.assert_close(ops.frames.double(), torch.from_numpy(surface.frames), rtol=0, atol=1e-6)
 
 
+def test_the_connection_laplacian_is_that_of_scipy_by_rows(sphere):
+    """Hermitian and positive semi-definite. On a curved surface no field is parallel."""
+    for surface in (sphere, ahm.PointCloud(sphere.points)):
+        found = ahm.torch.operators(surface, k_eig=2).connection_laplacian
+        made = ahm.operators(surface)
+        matrix = found.to_dense().numpy()
+        assert found.dtype == torch.complex64 and found.is_coalesced()
+        vertex = made.vertex_of_row
+        np.testing.assert_allclose(matrix, made.connection_laplacian.toarray()[vertex][:, vertex], atol=1e-6 * abs(matrix).max())
+        np.testing.assert_allclose(matrix, matrix.conj().T, atol=1e-6 * abs(matrix).max())
+        values = np.linalg.eigvalsh(matrix.astype(complex))
+        assert 1e-4 * values[-1] < values[0]
+
+
+def test_parallel_fields_are_the_kernel_of_the_connection_laplacian(flat_surfaces):
+    for kind in ("triangles", "cloud"):
+        surface = flat_surfaces[kind]
+        ops = ahm.torch.operators(surface, k_eig=2)
+        field = (ops.frames[:, :2] @ torch.tensor([0.3, -0.7, 0.0])).unsqueeze(2)
+        field = torch.complex(field[:, 0], field[:, 1])
+        assert torch.sparse.mm(ops.connection_laplacian, field).abs().max() < 1e-5
+        values = np.linalg.eigvalsh(ops.connection_laplacian.to_dense().numpy().astype(complex))
+        assert values[0] > -1e-6 * values[-1] and values[1] > 1e-5 * values[-1]      # the constant fields only
+
+
+def test_products_with_the_connection_laplacian_have_derivatives(sphere):
+    matrix = ahm.torch.operators(sphere, k_eig=2).connection_laplacian
+    field = torch.randn(len(sphere), 2, dtype=torch.complex64, generator=torch.Generator().manual_seed(1)).requires_grad_()
+    energy = (field.conj() * torch.sparse.mm(matrix, field)).sum().real
+    energy.backward()
+    torch.testing.assert_close(field.grad, 2 * torch.sparse.mm(matrix, field.detach()), rtol=1e-4, atol=1e-4)
+
+
+def test_the_connection_laplacian_is_real_where_there_is_no_orientation():
+    band = ahm.TriangleMesh(*moebius_band())
+    n, ops = len(band), ahm.torch.operators(band, k_eig=2)
+    matrix = ops.connection_laplacian.to_dense().double()
+    assert ops.connection_laplacian.dtype == torch.float32 and matrix.shape == (2 * n, 2 * n)
+    torch.testing.assert_close(matrix, matrix.T, rtol=0, atol=1e-5)
+    assert torch.linalg.eigvalsh(matrix)[0] > -1e-5
+    made = ahm.operators(band)
+    order = (2 * made.vertex_of_row[:, None] + [0, 1]).ravel()
+    np.testing.assert_allclose(matrix, made.connection_laplacian.toarray()[order][:, order], atol=1e-5)
+
+
 def test_operators_name_rows_that_have_no_vertex_of_their_own(plane, flat_surfaces):
     positions, faces = plane
     with pytest.raises(ValueError, match="row 143 has no vertex"):
