@@ -21,6 +21,7 @@ As a transform of data sets, of objects that have `pos` and `face` as those of P
 from __future__ import annotations
 
 import importlib
+import inspect
 import os
 from typing import Any, Dict, NamedTuple, Optional, Union
 
@@ -174,18 +175,24 @@ class LocalMaps:
     cache : folder, which is created; None: no cache. One file per object holds its edges, under a hash of the positions, the triangles,
         the options that change numbers, and the version of ahm. Damaged files are computed again. Several processes may share the folder.
         Nothing is ever deleted.
+    surface_options : options of `ahm.TriangleMesh` or `ahm.PointCloud`, such as non_manifold="split" for meshes and drop_non_finite=True
+        for clouds. `threads` is passed to them, too.
 
     Raises ValueError and TypeError naming the argument, also when the transform is called: errors of `ahm.TriangleMesh`,
-    `ahm.PointCloud` and `ahm.local_maps`. OSError (files of the cache that cannot be read or written).
+    `ahm.PointCloud` and `ahm.local_maps`, such as options of clouds for an object with `face`. OSError (files of the cache that cannot be read or written).
     """
 
     def __init__(self, radius: Optional[float] = None, k: Optional[int] = None, *, sources: Union[None, str, Vector] = None,
                  method: str = "auto", quality: bool = False, threads: int = 0,
-                 cache: Union[None, str, "os.PathLike[str]"] = None) -> None:
+                 cache: Union[None, str, "os.PathLike[str]"] = None, **surface_options: Any) -> None:
         if radius is None and k is None:
             raise ValueError("radius: missing; pass a radius or k")
         self._options = dict(checked(radius=radius, k=k, quality=quality, threads=threads),
                              method=arguments.choice(method, "method", ("auto", "polar", "heat")))
+        for name in surface_options:
+            if not any(name in inspect.signature(kind).parameters for kind in (TriangleMesh, PointCloud)):
+                raise TypeError(f"LocalMaps.__init__() got an unexpected keyword argument {name!r}")
+        self._surface_options = dict(surface_options, threads=threads)
         self._sources = sources
         self._cache = None if cache is None else DiskCache(cache)
 
@@ -203,12 +210,14 @@ class LocalMaps:
     def _edges(self, positions: np.ndarray, faces: Optional[np.ndarray], sources: Optional[np.ndarray]) -> Dict[str, np.ndarray]:
         key = ""
         if self._cache:
-            numbers = {name: value for name, value in self._options.items() if name != "threads"}
-            key = key_of(f"local maps {sorted(numbers.items())}", positions, faces, sources)
+            numbers = {**self._options, **self._surface_options}
+            text = [(name, np.asarray(numbers[name]).tolist()) for name in sorted(numbers) if name not in ("threads", "progress")]
+            key = key_of(f"local maps {text}", positions, faces, sources)
             stored = self._cache.get(key)
             if stored is not None:
                 return stored
-        surface = PointCloud(positions) if faces is None else TriangleMesh(positions, faces)
+        options = self._surface_options
+        surface = PointCloud(positions, **options) if faces is None else TriangleMesh(positions, faces, **options)
         made = edges(local_maps(surface, sources=sources, **self._options))._asdict()
         found = {name: value.numpy() for name, value in made.items() if value is not None and name != "indptr"}
         if self._cache:
@@ -216,7 +225,7 @@ class LocalMaps:
         return found
 
     def __repr__(self) -> str:
-        options = [f"{name}={value!r}" for name, value in self._options.items()]
+        options = [f"{name}={value!r:.60}" for name, value in {**self._options, **self._surface_options}.items()]
         if self._sources is not None:
             options.append(f"sources={self._sources!r:.60}")
         if self._cache:

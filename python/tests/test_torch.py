@@ -107,6 +107,40 @@ def test_a_transform_takes_sources(sphere, tmp_path, computed):
     assert "sources=[7, 3, 11, 3]" in repr(ahm.torch.LocalMaps(k=8, sources=chosen))
 
 
+def test_a_transform_passes_options_to_the_surface(sphere, tmp_path, computed):
+    """Two spheres that share a vertex are cut apart there. Points that are not finite are dropped."""
+    positions, faces = sphere.points, sphere.faces
+    both = np.vstack([positions, positions + 2 * positions[0]])
+    far = int(np.argmin(((both[642:] - positions[0])**2).sum(1))) + 642
+    joined = np.vstack([faces, np.where(faces + 642 == far, 0, faces + 642)])
+    mesh = lambda: as_data(both, joined)  # noqa: E731
+    with pytest.raises(ValueError, match="non_manifold='split'"):
+        ahm.torch.LocalMaps(k=8)(mesh())
+    split = ahm.torch.edges(ahm.local_maps(ahm.TriangleMesh(both, joined, non_manifold="split"), k=8))
+    assert_same(ahm.torch.LocalMaps(k=8, non_manifold="split", cache=tmp_path)(mesh()), split)
+    positions = np.vstack([positions, [[np.nan, 0, 0]]])
+    with pytest.raises(ValueError, match="642"):
+        ahm.torch.LocalMaps(k=8)(as_data(positions))
+    dropped = ahm.torch.LocalMaps(k=8, drop_non_finite=True)(as_data(positions))
+    assert_same(dropped, ahm.torch.edges(ahm.local_maps(ahm.PointCloud(positions, drop_non_finite=True), k=8)))
+    assert int(dropped.edge_index.max()) == 641 and bool(torch.isfinite(dropped.log).all())
+
+    computed.clear()
+    for options in (dict(rows=np.arange(600)), dict(rows=np.arange(601)), dict(smooth=0.1), dict(smooth=0)):
+        ahm.torch.LocalMaps(k=8, cache=tmp_path, **options)(as_data(sphere.points))
+    ahm.torch.LocalMaps(k=8, cache=tmp_path, rows=list(range(601)))(as_data(sphere.points))
+    assert len(computed) == 4
+
+
+def test_options_of_the_surface_are_named(sphere):
+    with pytest.raises(TypeError, match=r"LocalMaps.__init__\(\) got an unexpected keyword argument 'nonmanifold'"):
+        ahm.torch.LocalMaps(k=8, nonmanifold="split")
+    with pytest.raises(ValueError, match="non_manifold: 'cut' is not one of"):
+        ahm.torch.LocalMaps(k=8, non_manifold="cut")(as_data(sphere.points, sphere.faces))
+    with pytest.raises(TypeError, match="unexpected keyword argument 'non_manifold'"):
+        ahm.torch.LocalMaps(k=8, non_manifold="split")(as_data(sphere.points))
+
+
 def test_quality_is_that_of_the_maps(sphere):
     maps = ahm.local_maps(sphere, 0.4, quality=True)
     quality = ahm.torch.edges(maps).quality
