@@ -43,14 +43,17 @@ void check_extent(const LocalMapOptions& options) {
                           "; it must be finite and > 0, or 0 if `k` is > 0");
 }
 
-NearestRadius radius_of_nearest(const TangentGraph& graph, Ball& ball, const Source& source, Index k) {
-  Index count = 0;
+NearestRadius radius_of_nearest(const TangentGraph& graph, Ball& ball, const Source& source,
+                                const LocalMapOptions& options) {
+  Index count = 0, vertices = 0;
   double farthest = graph.mean_edge_length() / 4;
-  ball.grow(source.vertices(), std::numeric_limits<double>::infinity(), [&](Index, double distance) {
+  ball.grow(source.vertices(), std::numeric_limits<double>::infinity(), [&](Index vertex, double distance) {
     farthest = std::max(farthest, distance);
-    return ++count < k;
+    ++vertices;
+    if (is_neighbor(options, vertex)) ++count;
+    return count < options.k;
   });
-  return {farthest * graph.length_unit(), count < k};
+  return {farthest * graph.length_unit(), count < options.k, vertices};
 }
 
 void check_memory(const TangentGraph& graph, std::span<const Source> sources,
@@ -67,8 +70,11 @@ void check_memory(const TangentGraph& graph, std::span<const Source> sources,
   for (std::size_t k = 0; k < samples; ++k) {
     const std::size_t s = (2 * k + 1) * sources.size() / (2 * samples);
     double count = 0;
-    ball.grow(sources[s].vertices().first(1), radius(s) / graph.length_unit(),
-              [&](Index, double) { return options.k == 0 || count < options.k ? ++count <= enough : false; });
+    ball.grow(sources[s].vertices().first(1), radius(s) / graph.length_unit(), [&](Index vertex, double) {
+      if (options.k > 0 && count >= options.k) return false;
+      if (is_neighbor(options, vertex)) ++count;
+      return count <= enough;
+    });
     counts.push_back(count);
   }
   std::sort(counts.begin(), counts.end());
