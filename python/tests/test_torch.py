@@ -45,6 +45,7 @@ def test_edges_in_double_precision_share_the_memory_of_the_maps(sphere):
         ahm.torch.edges(maps, torch.float16)
 
 
+@pytest.mark.filterwarnings("ignore:Sparse CSR tensor support")
 def test_compressed_rows_and_coordinates_are_one_matrix(sphere):
     """The offsets share the memory of the maps of all rows. As matrices both forms are that of scipy."""
     maps = ahm.local_maps(sphere, 0.4)
