@@ -169,9 +169,10 @@ class LocalMaps:
     `torch.searchsorted(data.edge_index[1], torch.arange(len(data.pos) + 1))` are the offsets of compressed rows, also of a batch, which
     could not concatenate offsets.
 
-    radius, k, method, quality, threads : as in `ahm.local_maps`.
+    radius, k, method, transport, quality, threads : as in `ahm.local_maps`. Surfaces that are not orientable require transport=False;
+        then `transport` is not set.
     sources : rows, or the name of an attribute of the object that contains them; None: all rows. The other rows get no neighbors: they
-        are the target of no edge, and remain neighbors of the sources. Repeated rows count once.
+        are the target of no edge, and remain neighbors of the sources. Repeated rows count once, and rows without a vertex get no edges.
     cache : folder, which is created; None: no cache. One file per object holds its edges, under a hash of the positions, the triangles,
         the options that change numbers, and the version of ahm. Damaged files are computed again. Several processes may share the folder.
         Nothing is ever deleted.
@@ -183,11 +184,11 @@ class LocalMaps:
     """
 
     def __init__(self, radius: Optional[float] = None, k: Optional[int] = None, *, sources: Union[None, str, Vector] = None,
-                 method: str = "auto", quality: bool = False, threads: int = 0,
+                 method: str = "auto", transport: bool = True, quality: bool = False, threads: int = 0,
                  cache: Union[None, str, "os.PathLike[str]"] = None, **surface_options: Any) -> None:
         if radius is None and k is None:
             raise ValueError("radius: missing; pass a radius or k")
-        self._options = dict(checked(radius=radius, k=k, quality=quality, threads=threads),
+        self._options = dict(checked(radius=radius, k=k, transport=transport, quality=quality, threads=threads),
                              method=arguments.choice(method, "method", ("auto", "polar", "heat")))
         for name in surface_options:
             if not any(name in inspect.signature(kind).parameters for kind in (TriangleMesh, PointCloud)):
@@ -197,8 +198,11 @@ class LocalMaps:
         self._cache = None if cache is None else DiskCache(cache)
 
     def __call__(self, data: Any) -> Any:
-        positions = data.pos.detach().cpu().double().numpy()
         faces = getattr(data, "face", None)
+        for name, value in (("pos", getattr(data, "pos", None)), ("face", faces)):
+            if not (torch.is_tensor(value) or (name == "face" and value is None)):
+                raise TypeError(f"data.{name}: expected a tensor, got {arguments.describe(value)}")
+        positions = data.pos.detach().cpu().double().numpy()
         sources = getattr(data, self._sources) if isinstance(self._sources, str) else self._sources
         if sources is not None:
             sources = sources.cpu() if torch.is_tensor(sources) else sources
@@ -218,6 +222,8 @@ class LocalMaps:
                 return stored
         options = self._surface_options
         surface = PointCloud(positions, **options) if faces is None else TriangleMesh(positions, faces, **options)
+        if sources is not None:
+            sources = sources[surface._body.vertex_of_row()[sources] >= 0]
         made = edges(local_maps(surface, sources=sources, **self._options))._asdict()
         found = {name: value.numpy() for name, value in made.items() if value is not None and name != "indptr"}
         if self._cache:

@@ -182,7 +182,7 @@ def test_a_transform_fills_data_of_meshes_and_clouds(sphere):
         torch.testing.assert_close(getattr(mesh, name), getattr(expected, name))
     cloud = transform(as_data(sphere.points))
     torch.testing.assert_close(cloud.log, ahm.torch.edges(ahm.local_maps(ahm.PointCloud(sphere.points), k=12)).log)
-    assert repr(copy.deepcopy(transform)) == "ahm.torch.LocalMaps(k=12, quality=False, threads=0, method='auto')"
+    assert repr(copy.deepcopy(transform)) == "ahm.torch.LocalMaps(k=12, transport=True, quality=False, threads=0, method='auto')"
 
 
 def as_dictionary(data):
@@ -325,8 +325,12 @@ def test_operators_name_rows_that_have_no_vertex_of_their_own(plane, flat_surfac
 
 def test_rows_without_a_vertex_have_no_edges(plane):
     positions, faces = plane
-    data = ahm.torch.LocalMaps(radius=2.0)(as_data(np.vstack([positions, [[50.0, 50, 50]]]), faces))
+    loose = lambda: as_data(np.vstack([positions, [[50.0, 50, 50]]]), faces)  # noqa: E731
+    data = ahm.torch.LocalMaps(radius=2.0)(loose())
     assert int(data.edge_index.max()) == len(positions) - 1
+    some = ahm.torch.LocalMaps(radius=2.0, sources=[len(positions), 7])(loose())
+    kept = data.edge_index[1] == 7
+    assert torch.equal(some.edge_index, data.edge_index[:, kept]) and torch.equal(some.log, data.log[kept])
     assert all(bool(torch.isfinite(t).all()) for t in (data.log, data.transport.real, data.distance, data.weight))
 
 
@@ -342,6 +346,15 @@ def test_arguments_are_named(sphere):
     band = ahm.TriangleMesh(*moebius_band())
     with pytest.raises(ValueError, match="orientable"):
         ahm.torch.edges(ahm.local_maps(band, 0.5))
+    with pytest.raises(ValueError, match="transport=False"):
+        ahm.torch.LocalMaps(0.5)(as_data(*moebius_band()))
+    data = ahm.torch.LocalMaps(0.5, transport=False)(as_data(*moebius_band()))
+    assert not hasattr(data, "transport") and len(data.log) == data.edge_index.shape[1]
+    for pos in (None, np.zeros((3, 3))):
+        with pytest.raises(TypeError, match="data.pos: expected a tensor"):
+            ahm.torch.LocalMaps(k=8)(types.SimpleNamespace(pos=pos))
+    with pytest.raises(TypeError, match="data.face: expected a tensor"):
+        ahm.torch.LocalMaps(k=8)(types.SimpleNamespace(pos=torch.zeros(3, 3), face=[[0], [1], [2]]))
 
 
 def moebius_band(n=40, m=4):
