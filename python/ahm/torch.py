@@ -92,10 +92,11 @@ def edges(maps: _Maps, dtype: Any = torch.float32) -> Edges:
     turns = None if maps.transport is None else maps.transport.view(np.complex128)[:, 0]
     log, distance, weight, quality, transport = (
         None if values is None else torch.from_numpy(values[kept]) for values in (maps.log, maps.distance, maps.weight, maps.quality, turns))
-    transport = None if transport is None else transport.conj()
     if dtype is torch.float32:
         log, distance, weight, quality = (None if values is None else values.float() for values in (log, distance, weight, quality))
-        transport = None if transport is None else transport.to(torch.complex64).resolve_conj()
+        transport = None if transport is None else transport.to(torch.complex64).conj_physical_()
+    elif transport is not None:
+        transport = transport.conj()
     return Edges(torch.from_numpy(ends), torch.from_numpy(indptr), log, transport, distance, weight, quality)
 
 
@@ -220,15 +221,18 @@ class LocalMaps:
             stored = self._cache.get(key)
             if stored is not None:
                 return stored
-        options = self._surface_options
-        surface = PointCloud(positions, **options) if faces is None else TriangleMesh(positions, faces, **options)
-        if sources is not None:
-            sources = sources[surface._body.vertex_of_row()[sources] >= 0]
-        made = edges(local_maps(surface, sources=sources, **self._options))._asdict()
+        made = edges(self._maps(positions, faces, sources))._asdict()
         found = {name: value.numpy() for name, value in made.items() if value is not None and name != "indptr"}
         if self._cache:
             self._cache.put(key, found)
         return found
+
+    def _maps(self, positions: np.ndarray, faces: Optional[np.ndarray], sources: Optional[np.ndarray]) -> _Maps:
+        options = self._surface_options
+        surface = PointCloud(positions, **options) if faces is None else TriangleMesh(positions, faces, **options)
+        if sources is not None:
+            sources = sources[surface._body.vertex_of_row()[sources] >= 0]
+        return local_maps(surface, sources=sources, **self._options)
 
     def __repr__(self) -> str:
         options = [f"{name}={value!r:.60}" for name, value in {**self._options, **self._surface_options}.items()]

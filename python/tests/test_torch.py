@@ -75,6 +75,18 @@ def test_maps_of_some_sources_are_those_of_all_restricted(sphere, kind):
             torch.testing.assert_close(getattr(found, name), getattr(whole, name)[kept], rtol=0, atol=0)
 
 
+def test_maps_of_many_sources_are_those_of_a_few_at_a_time():
+    """Polar maps are computed in batches of several thousand sources."""
+    mesh = ahm.TriangleMesh(*ahm.shapes.sphere(5))
+    rows = np.arange(len(mesh))
+    for options in (dict(k=6), dict(radius=0.05)):
+        whole = ahm.local_maps(mesh, method="polar", quality=True, **options)
+        parts = [ahm.local_maps(mesh, method="polar", quality=True, sources=part, **options) for part in np.array_split(rows, 4)]
+        assert np.array_equal(np.diff(whole.indptr), np.concatenate([np.diff(part.indptr) for part in parts]))
+        for name in ("indices", "log", "distance", "weight", "transport", "quality"):
+            assert np.array_equal(getattr(whole, name), np.concatenate([getattr(part, name) for part in parts]))
+
+
 def test_maps_by_heat_depend_on_other_sources_by_the_margin_only(sphere):
     """Sources share patches, whose ends differ."""
     options = dict(radius=0.4, method="heat")

@@ -22,11 +22,11 @@ double entry_bytes(const TangentGraph& graph, bool quality) {
                                                graph.transport_layout().width()));
 }
 
-/// Concatenates a column of all entries, and frees the parts one by one.
+/// Appends a column of all entries, and frees the parts one by one. @param total  expected size of the column in the end
 template <class T>
 void join(std::vector<LocalEntries>& entries, std::vector<T> LocalEntries::*column, std::size_t total,
           std::vector<T>& out) {
-  out.reserve(total);
+  if (out.empty()) out.reserve(total);
   for (LocalEntries& e : entries) {
     out.insert(out.end(), (e.*column).begin(), (e.*column).end());
     e.*column = {};
@@ -85,27 +85,31 @@ void check_memory(const TangentGraph& graph, std::span<const Source> sources,
                             "; use a smaller radius, fewer sources, or only the nearest vertices");
 }
 
+void append(const TangentGraph& graph, std::vector<LocalEntries>& entries, std::size_t total, LocalMaps& maps,
+            unsigned threads) {
+  const auto append_vertices = [&] {
+    if (maps.weights.empty()) maps.weights.reserve(total);
+    for (const LocalEntries& e : entries)
+      for (const Vertex j : e.vertices) maps.weights.push_back(world_mass(graph, graph.mass(j.index)));
+    join(entries, &LocalEntries::vertices, total, maps.neighbors);
+  };
+  const auto append_numbers = [&] {
+    join(entries, &LocalEntries::distances, total, maps.distances);
+    join(entries, &LocalEntries::transports, total * graph.transport_layout().width(), maps.transports);
+    join(entries, &LocalEntries::logs, total * static_cast<std::size_t>(graph.dimension()), maps.logs);
+    if (std::ranges::any_of(entries, [](const LocalEntries& e) { return !e.quality.empty(); }))
+      join(entries, &LocalEntries::quality, total, maps.quality);
+  };
+  detail::run_both(threads, append_numbers, append_vertices);
+}
+
 LocalMaps joined(const TangentGraph& graph, std::vector<Offset> indptr, std::vector<LocalEntries>& entries,
                  unsigned threads) {
   LocalMaps maps;
   maps.dimension = graph.dimension();
   maps.kind = graph.transport_kind();
   maps.indptr = std::move(indptr);
-  const auto total = static_cast<std::size_t>(maps.indptr.back());
-  const auto join_vertices = [&] {
-    maps.weights.reserve(total);
-    for (const LocalEntries& e : entries)
-      for (const Vertex j : e.vertices) maps.weights.push_back(world_mass(graph, graph.mass(j.index)));
-    join(entries, &LocalEntries::vertices, total, maps.neighbors);
-  };
-  const auto join_numbers = [&] {
-    join(entries, &LocalEntries::distances, total, maps.distances);
-    join(entries, &LocalEntries::transports, total * maps.transport_width(), maps.transports);
-    join(entries, &LocalEntries::logs, total * static_cast<std::size_t>(graph.dimension()), maps.logs);
-    if (std::ranges::any_of(entries, [](const LocalEntries& e) { return !e.quality.empty(); }))
-      join(entries, &LocalEntries::quality, total, maps.quality);
-  };
-  detail::run_both(threads, join_numbers, join_vertices);
+  append(graph, entries, static_cast<std::size_t>(maps.indptr.back()), maps, threads);
   return maps;
 }
 

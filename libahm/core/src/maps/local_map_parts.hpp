@@ -43,7 +43,12 @@ struct LocalEntries {
   std::vector<double> logs, distances, transports, quality;
 };
 
-/// Concatenates all entries. Frees them one by one, so that the peak memory is little more than the result.
+/// Appends entries to maps, except for `indptr`. Frees the parts one by one.
+/// @param total  expected number of entries of the maps in the end: memory for as many is reserved at the first call
+void append(const TangentGraph& graph, std::vector<LocalEntries>& entries, std::size_t total, LocalMaps& maps,
+            unsigned threads);
+
+/// The maps of all entries.
 LocalMaps joined(const TangentGraph& graph, std::vector<Offset> indptr, std::vector<LocalEntries>& entries,
                  unsigned threads);
 

@@ -5,6 +5,7 @@
 #include <compare>
 #include <limits>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <string>
@@ -185,36 +186,46 @@ LocalMaps local_polar_maps(const TangentGraph& graph, std::span<const Source> so
       return options.radius > 0 ? options.radius : radius_of_nearest(graph, ball, sources[s], options).radius;
     };
     check_memory(graph, sources, radius, options);
+    // Batches of sources, appended to the result one after the other: so their parts take little memory. Each has enough chunks for many
+    // threads.
     constexpr Offset chunk = 64;
     const auto n = static_cast<Offset>(sources.size());
-    std::vector<Offset> indptr(sources.size() + 1, 0);
-    std::vector<LocalEntries> chunks(static_cast<std::size_t>((n + chunk - 1) / chunk));
+    const Offset batch = std::max(chunk, n / 16 / chunk) * chunk;
+    LocalMaps maps;
+    maps.dimension = graph.dimension();
+    maps.kind = graph.transport_kind();
+    maps.indptr.assign(sources.size() + 1, 0);
     detail::Mutex mutex;
     std::vector<std::unique_ptr<Collector>> idle;
     Offset done = 0;
-    detail::parallel_chunks(n, chunk, options.heat.threads, [&](Offset begin, Offset end) {
-      std::unique_ptr<Collector> collector;
-      {
+    for (Offset first = 0; first < n; first += batch) {
+      const Offset count = std::min(batch, n - first);
+      std::vector<LocalEntries> chunks(static_cast<std::size_t>((count + chunk - 1) / chunk));
+      detail::parallel_chunks(count, chunk, options.heat.threads, [&](Offset begin, Offset end) {
+        std::unique_ptr<Collector> collector;
+        {
+          const detail::Lock lock(mutex);
+          if (!idle.empty()) collector = std::move(idle.back()), idle.pop_back();
+        }
+        if (!collector) collector = std::make_unique<Collector>(graph, sources, options, make_coordinates());
+        LocalEntries& entries = chunks[static_cast<std::size_t>(begin / chunk)];
+        for (auto s = static_cast<std::size_t>(first + begin); s < static_cast<std::size_t>(first + end); ++s) {
+          const std::size_t before = entries.vertices.size();
+          collector->collect(s, entries);
+          maps.indptr[s + 1] = static_cast<Offset>(entries.vertices.size() - before);
+        }
         const detail::Lock lock(mutex);
-        if (!idle.empty()) collector = std::move(idle.back()), idle.pop_back();
-      }
-      if (!collector) collector = std::make_unique<Collector>(graph, sources, options, make_coordinates());
-      LocalEntries& entries = chunks[static_cast<std::size_t>(begin / chunk)];
-      for (Offset s = begin; s < end; ++s) {
-        const std::size_t before = entries.vertices.size();
-        collector->collect(static_cast<std::size_t>(s), entries);
-        indptr[static_cast<std::size_t>(s) + 1] = static_cast<Offset>(entries.vertices.size() - before);
-      }
-      entries.vertices.shrink_to_fit(), entries.distances.shrink_to_fit();
-      entries.logs.shrink_to_fit(), entries.transports.shrink_to_fit(), entries.quality.shrink_to_fit();
-      const detail::Lock lock(mutex);
-      idle.push_back(std::move(collector));
-      done += end - begin;
-      options.heat.progress.step("solve", static_cast<double>(done) / static_cast<double>(n));
-    });
-    idle.clear();
-    for (std::size_t s = 0; s < sources.size(); ++s) indptr[s + 1] += indptr[s];
-    return joined(graph, std::move(indptr), chunks, options.heat.threads);
+        idle.push_back(std::move(collector));
+        done += end - begin;
+        options.heat.progress.step("solve", static_cast<double>(done) / static_cast<double>(n));
+      });
+      if (first + count == n) idle.clear();
+      std::size_t found = 0;
+      for (const LocalEntries& entries : chunks) found += entries.vertices.size();
+      append(graph, chunks, found * static_cast<std::size_t>((n + count - 1) / count), maps, options.heat.threads);
+    }
+    std::partial_sum(maps.indptr.begin(), maps.indptr.end(), maps.indptr.begin());
+    return maps;
   });
 }
 
