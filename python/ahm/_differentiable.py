@@ -184,7 +184,7 @@ def _cross(a: Any, b: Any) -> Any:
 def _mesh(surface: SurfaceLike) -> Surface:
     on = as_body(surface)
     if on._face_count == 0:
-        raise ValueError(f"surface: expected a mesh, got {on!r}; derivatives are those over flat faces")
+        raise ValueError(f"surface: expected a mesh, got {on!r}; there use ahm.trace, ahm.log_map and ahm.distance, without derivatives")
     return on
 
 

@@ -45,6 +45,115 @@ def test_edges_in_double_precision_share_the_memory_of_the_maps(sphere):
         ahm.torch.edges(maps, torch.float16)
 
 
+@pytest.mark.filterwarnings("ignore:Sparse CSR tensor support")
+def test_compressed_rows_and_coordinates_are_one_matrix(sphere):
+    """The offsets share the memory of the maps of all rows. As matrices both forms are that of scipy."""
+    maps = ahm.local_maps(sphere, 0.4)
+    found = ahm.torch.edges(maps)
+    assert found.indptr.data_ptr() == maps.indptr.ctypes.data and found.indptr.dtype == torch.int64
+    n = len(sphere)
+    assert torch.equal(torch.repeat_interleave(torch.arange(n), found.indptr.diff()), found.edge_index[1])
+    assert torch.equal(torch.searchsorted(found.edge_index[1], torch.arange(n + 1)), found.indptr)
+    matrix = torch.sparse_coo_tensor(found.edge_index.flip(0), found.weight, (n, n)).to_sparse_csr()
+    assert torch.equal(matrix.crow_indices(), found.indptr)
+    np.testing.assert_allclose(matrix.to_dense(), maps.csr("weight").toarray(), rtol=1e-6)
+
+
+@pytest.mark.parametrize("kind", ["mesh", "cloud"])
+def test_maps_of_some_sources_are_those_of_all_restricted(sphere, kind):
+    """In any order. The other rows have no edges, and compressed rows still have an offset for each of them."""
+    surface = sphere if kind == "mesh" else ahm.PointCloud(sphere.points)
+    options = dict(radius=0.4, method="polar", quality=True)
+    whole = ahm.torch.edges(ahm.local_maps(surface, **options), torch.float64)
+    chosen = np.random.default_rng(1).choice(len(surface), 60, replace=False)
+    for sources in (chosen, np.sort(chosen), chosen[:0], np.arange(len(surface))):
+        found = ahm.torch.edges(ahm.local_maps(surface, sources=sources, **options), torch.float64)
+        kept = torch.from_numpy(np.isin(whole.edge_index[1], sources))
+        assert torch.equal(found.edge_index, whole.edge_index[:, kept])
+        assert torch.equal(found.indptr.diff(), whole.indptr.diff() * torch.from_numpy(np.isin(np.arange(len(surface)), sources)))
+        for name in ("log", "transport", "distance", "weight", "quality"):
+            torch.testing.assert_close(getattr(found, name), getattr(whole, name)[kept], rtol=0, atol=0)
+
+
+def test_maps_of_many_sources_are_those_of_a_few_at_a_time():
+    """Polar maps are computed in batches of several thousand sources."""
+    mesh = ahm.TriangleMesh(*ahm.shapes.sphere(5))
+    rows = np.arange(len(mesh))
+    for options in (dict(k=6), dict(radius=0.05)):
+        whole = ahm.local_maps(mesh, method="polar", quality=True, **options)
+        parts = [ahm.local_maps(mesh, method="polar", quality=True, sources=part, **options) for part in np.array_split(rows, 4)]
+        assert np.array_equal(np.diff(whole.indptr), np.concatenate([np.diff(part.indptr) for part in parts]))
+        for name in ("indices", "log", "distance", "weight", "transport", "quality"):
+            assert np.array_equal(getattr(whole, name), np.concatenate([getattr(part, name) for part in parts]))
+
+
+def test_maps_by_heat_depend_on_other_sources_by_the_margin_only(sphere):
+    """Sources share patches, whose ends differ."""
+    options = dict(radius=0.4, method="heat")
+    whole, some = ahm.local_maps(sphere, **options), ahm.local_maps(sphere, sources=[600, 7, 12], **options)
+    for axis in "uv":
+        expected, found = whole.csr(axis).toarray()[[600, 7, 12]], some.csr(axis).toarray()
+        np.testing.assert_allclose(found, expected, atol=2e-4 * 0.4)
+
+
+def test_a_transform_takes_sources(sphere, tmp_path, computed):
+    """As rows, or from an attribute of each object. The cache distinguishes them."""
+    chosen = [7, 3, 11, 3]
+    expected = ahm.torch.edges(ahm.local_maps(sphere, k=8, sources=[3, 7, 11]))
+    for sources in (chosen, np.array(chosen), torch.tensor(chosen)):
+        found = ahm.torch.LocalMaps(k=8, sources=sources)(as_data(sphere.points, sphere.faces))
+        assert_same(found, expected)
+        assert found.edge_index[1].tolist() == 8 * [3] + 8 * [7] + 8 * [11]
+    data = as_data(sphere.points, sphere.faces)
+    data.seeds = torch.tensor(chosen)
+    assert_same(ahm.torch.LocalMaps(k=8, sources="seeds", cache=tmp_path)(data), expected)
+    computed.clear()
+    assert_same(ahm.torch.LocalMaps(k=8, sources=chosen, cache=tmp_path)(as_data(sphere.points, sphere.faces)), expected)
+    assert len(computed) == 0
+    for count, sources in enumerate((None, [3, 7], [])):
+        data = ahm.torch.LocalMaps(k=8, sources=sources, cache=tmp_path)(as_data(sphere.points, sphere.faces))
+        assert len(computed) == count + 1 and data.edge_index.shape == (2, 8 * (len(sphere) if sources is None else len(sources)))
+    for bad, error, text in (([0, 642], ValueError, r"sources\[1\]: row 642 is out of range"), ([0.5], TypeError, "sources: rows"),
+                             ("seeds", AttributeError, "seeds")):
+        with pytest.raises(error, match=text):
+            ahm.torch.LocalMaps(k=8, sources=bad)(as_data(sphere.points, sphere.faces))
+    assert "sources=[7, 3, 11, 3]" in repr(ahm.torch.LocalMaps(k=8, sources=chosen))
+
+
+def test_a_transform_passes_options_to_the_surface(sphere, tmp_path, computed):
+    """Two spheres that share a vertex are cut apart there. Points that are not finite are dropped."""
+    positions, faces = sphere.points, sphere.faces
+    both = np.vstack([positions, positions + 2 * positions[0]])
+    far = int(np.argmin(((both[642:] - positions[0])**2).sum(1))) + 642
+    joined = np.vstack([faces, np.where(faces + 642 == far, 0, faces + 642)])
+    mesh = lambda: as_data(both, joined)  # noqa: E731
+    with pytest.raises(ValueError, match="non_manifold='split'"):
+        ahm.torch.LocalMaps(k=8)(mesh())
+    split = ahm.torch.edges(ahm.local_maps(ahm.TriangleMesh(both, joined, non_manifold="split"), k=8))
+    assert_same(ahm.torch.LocalMaps(k=8, non_manifold="split", cache=tmp_path)(mesh()), split)
+    positions = np.vstack([positions, [[np.nan, 0, 0]]])
+    with pytest.raises(ValueError, match="642"):
+        ahm.torch.LocalMaps(k=8)(as_data(positions))
+    dropped = ahm.torch.LocalMaps(k=8, drop_non_finite=True)(as_data(positions))
+    assert_same(dropped, ahm.torch.edges(ahm.local_maps(ahm.PointCloud(positions, drop_non_finite=True), k=8)))
+    assert int(dropped.edge_index.max()) == 641 and bool(torch.isfinite(dropped.log).all())
+
+    computed.clear()
+    for options in (dict(rows=np.arange(600)), dict(rows=np.arange(601)), dict(smooth=0.1), dict(smooth=0)):
+        ahm.torch.LocalMaps(k=8, cache=tmp_path, **options)(as_data(sphere.points))
+    ahm.torch.LocalMaps(k=8, cache=tmp_path, rows=list(range(601)))(as_data(sphere.points))
+    assert len(computed) == 4
+
+
+def test_options_of_the_surface_are_named(sphere):
+    with pytest.raises(TypeError, match=r"LocalMaps.__init__\(\) got an unexpected keyword argument 'nonmanifold'"):
+        ahm.torch.LocalMaps(k=8, nonmanifold="split")
+    with pytest.raises(ValueError, match="non_manifold: 'cut' is not one of"):
+        ahm.torch.LocalMaps(k=8, non_manifold="cut")(as_data(sphere.points, sphere.faces))
+    with pytest.raises(TypeError, match="unexpected keyword argument 'non_manifold'"):
+        ahm.torch.LocalMaps(k=8, non_manifold="split")(as_data(sphere.points))
+
+
 def test_quality_is_that_of_the_maps(sphere):
     maps = ahm.local_maps(sphere, 0.4, quality=True)
     quality = ahm.torch.edges(maps).quality
@@ -85,7 +194,7 @@ def test_a_transform_fills_data_of_meshes_and_clouds(sphere):
         torch.testing.assert_close(getattr(mesh, name), getattr(expected, name))
     cloud = transform(as_data(sphere.points))
     torch.testing.assert_close(cloud.log, ahm.torch.edges(ahm.local_maps(ahm.PointCloud(sphere.points), k=12)).log)
-    assert repr(copy.deepcopy(transform)) == "ahm.torch.LocalMaps(k=12, quality=False, threads=0, method='auto')"
+    assert repr(copy.deepcopy(transform)) == "ahm.torch.LocalMaps(k=12, transport=True, quality=False, threads=0, method='auto')"
 
 
 def as_dictionary(data):
@@ -173,6 +282,51 @@ def test_operators_are_by_rows_in_world_units(sphere):
         torch.testing.assert_close(ops.frames.double(), torch.from_numpy(surface.frames), rtol=0, atol=1e-6)
 
 
+def test_the_connection_laplacian_is_that_of_scipy_by_rows(sphere):
+    """Hermitian and positive semi-definite. On a curved surface no field is parallel."""
+    for surface in (sphere, ahm.PointCloud(sphere.points)):
+        found = ahm.torch.operators(surface, k_eig=2).connection_laplacian
+        made = ahm.operators(surface)
+        matrix = found.to_dense().numpy()
+        assert found.dtype == torch.complex64 and found.is_coalesced()
+        vertex = made.vertex_of_row
+        np.testing.assert_allclose(matrix, made.connection_laplacian.toarray()[vertex][:, vertex], atol=1e-6 * abs(matrix).max())
+        np.testing.assert_allclose(matrix, matrix.conj().T, atol=1e-6 * abs(matrix).max())
+        values = np.linalg.eigvalsh(matrix.astype(complex))
+        assert 1e-4 * values[-1] < values[0]
+
+
+def test_parallel_fields_are_the_kernel_of_the_connection_laplacian(flat_surfaces):
+    for kind in ("triangles", "cloud"):
+        surface = flat_surfaces[kind]
+        ops = ahm.torch.operators(surface, k_eig=2)
+        field = (ops.frames[:, :2] @ torch.tensor([0.3, -0.7, 0.0])).unsqueeze(2)
+        field = torch.complex(field[:, 0], field[:, 1])
+        assert torch.sparse.mm(ops.connection_laplacian, field).abs().max() < 1e-5
+        values = np.linalg.eigvalsh(ops.connection_laplacian.to_dense().numpy().astype(complex))
+        assert values[0] > -1e-6 * values[-1] and values[1] > 1e-5 * values[-1]      # the constant fields only
+
+
+def test_products_with_the_connection_laplacian_have_derivatives(sphere):
+    matrix = ahm.torch.operators(sphere, k_eig=2).connection_laplacian
+    field = torch.randn(len(sphere), 2, dtype=torch.complex64, generator=torch.Generator().manual_seed(1)).requires_grad_()
+    energy = (field.conj() * torch.sparse.mm(matrix, field)).sum().real
+    energy.backward()
+    torch.testing.assert_close(field.grad, 2 * torch.sparse.mm(matrix, field.detach()), rtol=1e-4, atol=1e-4)
+
+
+def test_the_connection_laplacian_is_real_where_there_is_no_orientation():
+    band = ahm.TriangleMesh(*moebius_band())
+    n, ops = len(band), ahm.torch.operators(band, k_eig=2)
+    matrix = ops.connection_laplacian.to_dense().double()
+    assert ops.connection_laplacian.dtype == torch.float32 and matrix.shape == (2 * n, 2 * n)
+    torch.testing.assert_close(matrix, matrix.T, rtol=0, atol=1e-5)
+    assert torch.linalg.eigvalsh(matrix)[0] > -1e-5
+    made = ahm.operators(band)
+    order = (2 * made.vertex_of_row[:, None] + [0, 1]).ravel()
+    np.testing.assert_allclose(matrix, made.connection_laplacian.toarray()[order][:, order], atol=1e-5)
+
+
 def test_operators_name_rows_that_have_no_vertex_of_their_own(plane, flat_surfaces):
     positions, faces = plane
     with pytest.raises(ValueError, match="row 143 has no vertex"):
@@ -183,8 +337,12 @@ def test_operators_name_rows_that_have_no_vertex_of_their_own(plane, flat_surfac
 
 def test_rows_without_a_vertex_have_no_edges(plane):
     positions, faces = plane
-    data = ahm.torch.LocalMaps(radius=2.0)(as_data(np.vstack([positions, [[50.0, 50, 50]]]), faces))
+    loose = lambda: as_data(np.vstack([positions, [[50.0, 50, 50]]]), faces)  # noqa: E731
+    data = ahm.torch.LocalMaps(radius=2.0)(loose())
     assert int(data.edge_index.max()) == len(positions) - 1
+    some = ahm.torch.LocalMaps(radius=2.0, sources=[len(positions), 7])(loose())
+    kept = data.edge_index[1] == 7
+    assert torch.equal(some.edge_index, data.edge_index[:, kept]) and torch.equal(some.log, data.log[kept])
     assert all(bool(torch.isfinite(t).all()) for t in (data.log, data.transport.real, data.distance, data.weight))
 
 
@@ -200,6 +358,15 @@ def test_arguments_are_named(sphere):
     band = ahm.TriangleMesh(*moebius_band())
     with pytest.raises(ValueError, match="orientable"):
         ahm.torch.edges(ahm.local_maps(band, 0.5))
+    with pytest.raises(ValueError, match="transport=False"):
+        ahm.torch.LocalMaps(0.5)(as_data(*moebius_band()))
+    data = ahm.torch.LocalMaps(0.5, transport=False)(as_data(*moebius_band()))
+    assert not hasattr(data, "transport") and len(data.log) == data.edge_index.shape[1]
+    for pos in (None, np.zeros((3, 3))):
+        with pytest.raises(TypeError, match="data.pos: expected a tensor"):
+            ahm.torch.LocalMaps(k=8)(types.SimpleNamespace(pos=pos))
+    with pytest.raises(TypeError, match="data.face: expected a tensor"):
+        ahm.torch.LocalMaps(k=8)(types.SimpleNamespace(pos=torch.zeros(3, 3), face=[[0], [1], [2]]))
 
 
 def moebius_band(n=40, m=4):

@@ -262,6 +262,42 @@ TEST(LocalPolarMaps, OfTheNearestAreTheFirstOfALargeRadius) {
   }
 }
 
+TEST(LocalMaps, ContainOnlyVerticesThatMayBeNeighbors) {
+  // A third of the vertices. Within a radius they are the entries of all restricted; by number, the first of these.
+  const auto surface = surface_of(joined(torus(1500), icosphere(1), {50, 0, 0}));
+  const TangentGraph& graph = surface.graph();
+  const PolarMapSolver solver(surface);
+  const std::vector<Vertex> sources = some_vertices(graph);
+  const double radius = 10 * edge_of(graph);
+  const auto is_neighbor = [](Vertex v) { return v.index % 3 == 0; };
+  for (const Method method : {Method::polar, Method::heat}) {
+    const auto maps_of = [&](const LocalMapOptions& o) {
+      return method == Method::polar ? solver.local_maps(sources, o) : local_maps(graph, sources, o);
+    };
+    const LocalMaps all = maps_of({.radius = radius}), some = maps_of({.radius = radius, .is_neighbor = is_neighbor});
+    for (const LocalMaps& few : {maps_of({.k = 20, .is_neighbor = is_neighbor}),
+                                 maps_of({.radius = radius, .k = 20, .is_neighbor = is_neighbor})})
+      for (std::size_t s = 0; s < sources.size(); ++s) {
+        Offset k = some.indptr[s], first = few.indptr[s];
+        for (Offset e = all.indptr[s]; e < all.indptr[s + 1]; ++e) {
+          if (!is_neighbor(all.neighbors[e])) continue;
+          ASSERT_EQ(some.neighbors[k], all.neighbors[e]);
+          ASSERT_EQ(some.distances[k], all.distances[e]);
+          ASSERT_EQ(some.logs[2 * k + 1], all.logs[2 * e + 1]);
+          if (first < few.indptr[s + 1]) {
+            ASSERT_EQ(few.neighbors[first], all.neighbors[e]);
+            ASSERT_NEAR(few.logs[2 * first + 1], all.logs[2 * e + 1], method == Method::polar ? 0 : 1e-3 * radius);
+            ++first;
+          }
+          ++k;
+        }
+        ASSERT_EQ(k, some.indptr[s + 1]);
+        ASSERT_EQ(first, few.indptr[s + 1]);
+        ASSERT_EQ(first - few.indptr[s], std::min<Offset>(20, k - some.indptr[s]));
+      }
+  }
+}
+
 TEST(RowLocalMaps, HaveAMethod) {
   const auto polygons = surface_of(quad_grid(8));
   const auto rows = row_local_maps(polygons, {.k = 9});  // polar: exact on the plane

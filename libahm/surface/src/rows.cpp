@@ -92,6 +92,7 @@ class SharedVertices {
           all.push_back(row);
         }
   }
+  bool empty() const noexcept { return rows_.empty(); }
   /// The rows of a vertex, in ascending order; empty if it has at most one.
   std::span<const Row> operator[](Vertex vertex) const {
     const auto found = rows_.find(vertex.index);
@@ -112,15 +113,20 @@ std::vector<double> entries_of(std::vector<double> values, std::span<const std::
   return result;
 }
 
-/// Replaces vertices by their rows, at most `most` per source (0: all). Drops virtual vertices. Of a shared vertex every row is an
-/// entry with an equal part of its weight.
+/// Replaces vertices by their rows, at most `most` per source (0: all). Of a shared vertex every row is an entry with an equal part of
+/// its weight.
 /// @param own  row of each source, which comes first among the rows of its vertex; empty: unknown
 RowLocalMaps on_rows(LocalMaps&& maps, const RowMap& rows, const SharedVertices& shared, std::span<const Row> own,
                      Index most) {
-  std::vector<std::size_t> entries;
   std::vector<Row> neighbors;
+  neighbors.reserve(maps.neighbors.size());
+  if (shared.empty()) {
+    for (const Vertex vertex : maps.neighbors) neighbors.push_back(*rows.row(vertex));
+    return std::move(maps).renamed(std::move(neighbors));
+  }
+  std::vector<std::size_t> entries;
   std::vector<std::pair<std::size_t, double>> parts;  // entries on shared vertices, and their part of the weight
-  entries.reserve(maps.neighbors.size()), neighbors.reserve(maps.neighbors.size());
+  entries.reserve(maps.neighbors.size());
   for (std::size_t s = 0; s + 1 < maps.indptr.size(); ++s) {
     const auto begin = static_cast<std::size_t>(maps.indptr[s]), end = static_cast<std::size_t>(maps.indptr[s + 1]);
     const std::size_t first = neighbors.size();
@@ -131,11 +137,9 @@ RowLocalMaps on_rows(LocalMaps&& maps, const RowMap& rows, const SharedVertices&
       entries.push_back(e), neighbors.push_back(row);
     };
     for (std::size_t e = begin; e < end; ++e) {
-      const std::optional<Row> row = rows.row(maps.neighbors[e]);
-      if (!row) continue;
       const std::span<const Row> all = shared[maps.neighbors[e]];
       if (all.empty()) {
-        add(e, *row, 1);
+        add(e, *rows.row(maps.neighbors[e]), 1);
         continue;
       }
       const bool is_source = e == begin && !own.empty() && std::ranges::find(all, own[s]) != all.end();
@@ -164,23 +168,13 @@ template <class Maps>
 RowLocalMaps to_rows(const Surface& surface, const LocalMapOptions& options, const Maps& maps_of,
                      std::span<const Row> own = {}) {
   const RowMap& rows = surface.rows();
-  const SharedVertices shared(rows);
-  const bool all_on_rows = !has_virtual_vertices(rows);
   LocalMapOptions wanted = options;
   wanted.bound_by_straight_line = true;
-  if (!all_on_rows && options.radius > 0) wanted.k = 0;
-  while (true) {
-    LocalMaps all = maps_of(wanted);
-    const std::vector<Offset> found = all.indptr;
-    RowLocalMaps maps = on_rows(std::move(all), rows, shared, own, options.k);
-    if (all_on_rows || options.radius > 0 || wanted.k >= rows.vertex_count()) return maps;
-    // Some of the nearest vertices may be virtual. Then more are requested, as long as there are more.
-    bool enough = true;
-    for (std::size_t s = 0; s + 1 < found.size() && enough; ++s)
-      enough = maps.indptr[s + 1] - maps.indptr[s] == options.k || found[s + 1] - found[s] < wanted.k;
-    if (enough) return maps;
-    wanted.k = std::min(2 * wanted.k, rows.vertex_count());
-  }
+  if (has_virtual_vertices(rows))
+    wanted.is_neighbor = [&](Vertex vertex) {
+      return rows.row(vertex) && (!options.is_neighbor || options.is_neighbor(vertex));
+    };
+  return on_rows(maps_of(wanted), rows, SharedVertices(rows), own, options.k);
 }
 
 /// The vertices of all rows that have one.

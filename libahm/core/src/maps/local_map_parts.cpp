@@ -22,11 +22,11 @@ double entry_bytes(const TangentGraph& graph, bool quality) {
                                                graph.transport_layout().width()));
 }
 
-/// Concatenates a column of all entries, and frees the parts one by one.
+/// Appends a column of all entries, and frees the parts one by one. @param total  expected size of the column in the end
 template <class T>
 void join(std::vector<LocalEntries>& entries, std::vector<T> LocalEntries::*column, std::size_t total,
           std::vector<T>& out) {
-  out.reserve(total);
+  if (out.empty()) out.reserve(total);
   for (LocalEntries& e : entries) {
     out.insert(out.end(), (e.*column).begin(), (e.*column).end());
     e.*column = {};
@@ -43,14 +43,17 @@ void check_extent(const LocalMapOptions& options) {
                           "; it must be finite and > 0, or 0 if `k` is > 0");
 }
 
-NearestRadius radius_of_nearest(const TangentGraph& graph, Ball& ball, const Source& source, Index k) {
-  Index count = 0;
+NearestRadius radius_of_nearest(const TangentGraph& graph, Ball& ball, const Source& source,
+                                const LocalMapOptions& options) {
+  Index count = 0, vertices = 0;
   double farthest = graph.mean_edge_length() / 4;
-  ball.grow(source.vertices(), std::numeric_limits<double>::infinity(), [&](Index, double distance) {
+  ball.grow(source.vertices(), std::numeric_limits<double>::infinity(), [&](Index vertex, double distance) {
     farthest = std::max(farthest, distance);
-    return ++count < k;
+    ++vertices;
+    if (is_neighbor(options, vertex)) ++count;
+    return count < options.k;
   });
-  return {farthest * graph.length_unit(), count < k};
+  return {farthest * graph.length_unit(), count < options.k, vertices};
 }
 
 void check_memory(const TangentGraph& graph, std::span<const Source> sources,
@@ -67,8 +70,11 @@ void check_memory(const TangentGraph& graph, std::span<const Source> sources,
   for (std::size_t k = 0; k < samples; ++k) {
     const std::size_t s = (2 * k + 1) * sources.size() / (2 * samples);
     double count = 0;
-    ball.grow(sources[s].vertices().first(1), radius(s) / graph.length_unit(),
-              [&](Index, double) { return options.k == 0 || count < options.k ? ++count <= enough : false; });
+    ball.grow(sources[s].vertices().first(1), radius(s) / graph.length_unit(), [&](Index vertex, double) {
+      if (options.k > 0 && count >= options.k) return false;
+      if (is_neighbor(options, vertex)) ++count;
+      return count <= enough;
+    });
     counts.push_back(count);
   }
   std::sort(counts.begin(), counts.end());
@@ -79,27 +85,31 @@ void check_memory(const TangentGraph& graph, std::span<const Source> sources,
                             "; use a smaller radius, fewer sources, or only the nearest vertices");
 }
 
+void append(const TangentGraph& graph, std::vector<LocalEntries>& entries, std::size_t total, LocalMaps& maps,
+            unsigned threads) {
+  const auto append_vertices = [&] {
+    if (maps.weights.empty()) maps.weights.reserve(total);
+    for (const LocalEntries& e : entries)
+      for (const Vertex j : e.vertices) maps.weights.push_back(world_mass(graph, graph.mass(j.index)));
+    join(entries, &LocalEntries::vertices, total, maps.neighbors);
+  };
+  const auto append_numbers = [&] {
+    join(entries, &LocalEntries::distances, total, maps.distances);
+    join(entries, &LocalEntries::transports, total * graph.transport_layout().width(), maps.transports);
+    join(entries, &LocalEntries::logs, total * static_cast<std::size_t>(graph.dimension()), maps.logs);
+    if (std::ranges::any_of(entries, [](const LocalEntries& e) { return !e.quality.empty(); }))
+      join(entries, &LocalEntries::quality, total, maps.quality);
+  };
+  detail::run_both(threads, append_numbers, append_vertices);
+}
+
 LocalMaps joined(const TangentGraph& graph, std::vector<Offset> indptr, std::vector<LocalEntries>& entries,
                  unsigned threads) {
   LocalMaps maps;
   maps.dimension = graph.dimension();
   maps.kind = graph.transport_kind();
   maps.indptr = std::move(indptr);
-  const auto total = static_cast<std::size_t>(maps.indptr.back());
-  const auto join_vertices = [&] {
-    maps.weights.reserve(total);
-    for (const LocalEntries& e : entries)
-      for (const Vertex j : e.vertices) maps.weights.push_back(world_mass(graph, graph.mass(j.index)));
-    join(entries, &LocalEntries::vertices, total, maps.neighbors);
-  };
-  const auto join_numbers = [&] {
-    join(entries, &LocalEntries::distances, total, maps.distances);
-    join(entries, &LocalEntries::transports, total * maps.transport_width(), maps.transports);
-    join(entries, &LocalEntries::logs, total * static_cast<std::size_t>(graph.dimension()), maps.logs);
-    if (std::ranges::any_of(entries, [](const LocalEntries& e) { return !e.quality.empty(); }))
-      join(entries, &LocalEntries::quality, total, maps.quality);
-  };
-  detail::run_both(threads, join_numbers, join_vertices);
+  append(graph, entries, static_cast<std::size_t>(maps.indptr.back()), maps, threads);
   return maps;
 }
 

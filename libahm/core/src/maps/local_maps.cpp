@@ -122,7 +122,7 @@ std::vector<double> radii_of(const TangentGraph& graph, std::span<const Source> 
   if (options.radius > 0) return radii;
   Ball ball(graph);
   for (std::size_t s = 0; s < sources.size(); ++s)
-    radii[s] = radius_of_nearest(graph, ball, sources[s], options.k).radius;
+    radii[s] = radius_of_nearest(graph, ball, sources[s], options).radius;
   return radii;
 }
 
@@ -220,9 +220,10 @@ class Worker {
     for (Index k : patch.edge)
       if (distance[k] < wanted * (1 - 1e-9)) return Outcome::patch_too_small;
     if (options_.radius > 0 || patch.edge.empty()) return Outcome::complete;
-    return std::ranges::count_if(distance, [&](double d) { return d <= radius; }) < options_.k
-               ? Outcome::radius_too_small
-               : Outcome::complete;
+    Index count = 0;
+    for (std::size_t i = 0; i < distance.size(); ++i)
+      if (distance[i] <= radius && is_neighbor(options_, patch.vertices[i])) ++count;
+    return count < options_.k ? Outcome::radius_too_small : Outcome::complete;
   }
 
   std::span<double> distances(std::size_t m, std::size_t n) { return std::span(distances_).subspan(m * n, n); }
@@ -260,6 +261,7 @@ class Worker {
     if (options_.bound_by_straight_line) raise(patch, sources_[source], distance);
     phi_.resize(n * d_);
     order_.clear();
+    farthest_ = 0;
     // A patch without an edge contains the whole component.
     const double farthest = options_.radius == 0 && patch.edge.empty() ? std::numeric_limits<double>::max() : radius;
     for (std::size_t k = 0; k < n; ++k) {
@@ -269,13 +271,17 @@ class Worker {
       heat.coordinates_at(m, vertex, phi);
       if (!heat.reached(m, vertex) || !all_finite(std::span<const double>(phi, d_)))
         distance[k] = std::numeric_limits<double>::infinity();
-      if (distance[k] <= farthest) order_.emplace_back(distance[k], vertex);
+      if (!(distance[k] <= farthest)) continue;
+      farthest_ = std::max(farthest_, distance[k]);
+      if (is_neighbor(options_, patch.vertices[k])) order_.emplace_back(distance[k], vertex);
     }
     const Outcome outcome = judge(patch, distance, wanted, radius);
     if (outcome != Outcome::complete) return outcome;
     std::sort(order_.begin(), order_.end());
-    if (options_.k > 0 && order_.size() > static_cast<std::size_t>(options_.k))
+    if (options_.k > 0 && order_.size() >= static_cast<std::size_t>(options_.k)) {
       order_.resize(static_cast<std::size_t>(options_.k));
+      farthest_ = order_.back().first;
+    }
 
     for (const auto& [vertex, known] : SourceVertices(patch.sources[m], graph_.dimension()))
       std::copy(known.vector.begin(), known.vector.end(), phi_.begin() + static_cast<std::ptrdiff_t>(vertex * d_));
@@ -302,12 +308,11 @@ class Worker {
   /// Adds the quality of the vertices in `order_`.
   /// @param distance  of each vertex of the patch
   void add_quality(const Patch& patch, std::span<const double> distance, LocalEntries& entries) const {
-    const double farthest = order_.empty() ? 0 : order_.back().first,
-                 h = graph_.length_unit() * graph_.mean_edge_length();
+    const double h = graph_.length_unit() * graph_.mean_edge_length();
     const auto phi = [&](Index k) { return std::span(phi_).subspan(to_size(k) * d_, d_); };
     for (const auto& [from_source, k] : order_) {
       const auto length_in_map = [&, here = k](Index j) {
-        if (!(distance[to_size(j)] <= farthest)) return std::numeric_limits<double>::quiet_NaN();
+        if (!(distance[to_size(j)] <= farthest_)) return std::numeric_limits<double>::quiet_NaN();
         double apart = 0;
         for (std::size_t a = 0; a < d_; ++a) apart = std::hypot(apart, phi(j)[a] - phi(here)[a]);
         return apart;
@@ -327,7 +332,8 @@ class Worker {
   std::vector<double> distances_;  ///< distances on the current patch from each of its sources, n each
   std::vector<Vec3> rim_;          ///< positions of the vertices at the edge of the patch
   std::vector<double> phi_;
-  std::vector<std::pair<double, Index>> order_;  ///< distance and number of vertices within the radius, nearest first
+  std::vector<std::pair<double, Index>> order_;  ///< distance and number of the neighbors, nearest first
+  double farthest_ = 0;  ///< the map contains the vertices up to this distance, neighbors or not
 };
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <compare>
 #include <limits>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <string>
@@ -81,17 +82,22 @@ class Collector {
     constexpr double growth = 1.3, largest_growth = 10;
     const bool by_number = options_.radius == 0;
     double radius = options_.radius, least = 0;
+    Index enough = options_.is_neighbor ? 0 : options_.k;
     if (by_number) {
-      const NearestRadius nearest = radius_of_nearest(graph_, ball_, sources_[s], options_.k);
+      const NearestRadius nearest = radius_of_nearest(graph_, ball_, sources_[s], options_);
       least = nearest.radius * (1 + 1e-12);
       radius = nearest.is_complete ? std::numeric_limits<double>::infinity() : least;
+      // Among as many vertices along geodesic paths there may be some neighbors less than along edge paths.
+      if (options_.is_neighbor) enough = nearest.vertices + nearest.vertices / 4;
     }
-    Index enough = options_.k;
     while (true) {
       const PolarNeighbors around = coordinates_(s, radius, enough);
       order_within(around.vertices, s, std::min(radius, around.horizon));
       if (options_.k > 0 && std::ssize(order_) >= options_.k) {
         order_.resize(static_cast<std::size_t>(options_.k));
+        farthest_ = 0;
+        for (const Neighbor& neighbor : order_)
+          farthest_ = std::max(farthest_, around.vertices[neighbor.place].distance);
         return around.vertices;
       }
       if (around.horizon < radius)
@@ -108,6 +114,7 @@ class Collector {
     const auto start =
         options_.bound_by_straight_line ? straight_line_origin(graph_, sources_[s]) : std::optional<Vec3>();
     order_.clear();
+    farthest_ = 0;
     for (std::size_t place = 0; place < vertices.size(); ++place) {
       const Wavefront::Seed& vertex = vertices[place];
       double distance = vertex.distance;
@@ -116,18 +123,17 @@ class Collector {
         if (const auto frame = graph_.frame(vertex.vertex.index))
           distance = bounded_distance(ahm::distance(frame->origin, *start), distance);
       const Vec2 log = log_of(vertex);
-      if (distance <= radius && std::isfinite(log[0]) && std::isfinite(log[1]))
-        order_.push_back({distance, vertex.vertex.index, place});
+      if (!(distance <= radius) || !std::isfinite(log[0]) || !std::isfinite(log[1])) continue;
+      farthest_ = std::max(farthest_, vertex.distance);
+      if (is_neighbor(options_, vertex.vertex.index)) order_.push_back({distance, vertex.vertex.index, place});
     }
     std::sort(order_.begin(), order_.end());
   }
 
-  /// Adds the quality of the neighbors in `order_`. The map contains the vertices up to the farthest of them.
+  /// Adds the quality of the neighbors in `order_`.
   void add_quality(std::span<const Wavefront::Seed> vertices, LocalEntries& entries) {
-    double farthest = 0;
-    for (const Neighbor& neighbor : order_) farthest = std::max(farthest, vertices[neighbor.place].distance);
     for (std::size_t place = 0; place < vertices.size(); ++place)
-      if (vertices[place].distance <= farthest)
+      if (vertices[place].distance <= farthest_)
         (*places_)[vertices[place].vertex.index] = static_cast<Index>(place + 1);
     const double h = graph_.length_unit() * graph_.mean_edge_length();
     for (const Neighbor& neighbor : order_) {
@@ -165,6 +171,7 @@ class Collector {
   LocalPolarCoordinates coordinates_;
   Ball ball_;
   std::vector<Neighbor> order_;               ///< the neighbors, nearest first
+  double farthest_ = 0;                       ///< the map contains the vertices up to this distance, neighbors or not
   std::optional<SparseArray<Index>> places_;  ///< 1 + place of each vertex in the polar coordinates; 0: not in the map
 };
 
@@ -176,39 +183,49 @@ LocalMaps local_polar_maps(const TangentGraph& graph, std::span<const Source> so
     check_points(graph, sources, options);
     Ball ball(graph);
     const auto radius = [&](std::size_t s) {
-      return options.radius > 0 ? options.radius : radius_of_nearest(graph, ball, sources[s], options.k).radius;
+      return options.radius > 0 ? options.radius : radius_of_nearest(graph, ball, sources[s], options).radius;
     };
     check_memory(graph, sources, radius, options);
+    // Batches of sources, appended to the result one after the other: so their parts take little memory. Each has enough chunks for many
+    // threads.
     constexpr Offset chunk = 64;
     const auto n = static_cast<Offset>(sources.size());
-    std::vector<Offset> indptr(sources.size() + 1, 0);
-    std::vector<LocalEntries> chunks(static_cast<std::size_t>((n + chunk - 1) / chunk));
+    const Offset batch = std::max(chunk, n / 16 / chunk) * chunk;
+    LocalMaps maps;
+    maps.dimension = graph.dimension();
+    maps.kind = graph.transport_kind();
+    maps.indptr.assign(sources.size() + 1, 0);
     detail::Mutex mutex;
     std::vector<std::unique_ptr<Collector>> idle;
     Offset done = 0;
-    detail::parallel_chunks(n, chunk, options.heat.threads, [&](Offset begin, Offset end) {
-      std::unique_ptr<Collector> collector;
-      {
+    for (Offset first = 0; first < n; first += batch) {
+      const Offset count = std::min(batch, n - first);
+      std::vector<LocalEntries> chunks(static_cast<std::size_t>((count + chunk - 1) / chunk));
+      detail::parallel_chunks(count, chunk, options.heat.threads, [&](Offset begin, Offset end) {
+        std::unique_ptr<Collector> collector;
+        {
+          const detail::Lock lock(mutex);
+          if (!idle.empty()) collector = std::move(idle.back()), idle.pop_back();
+        }
+        if (!collector) collector = std::make_unique<Collector>(graph, sources, options, make_coordinates());
+        LocalEntries& entries = chunks[static_cast<std::size_t>(begin / chunk)];
+        for (auto s = static_cast<std::size_t>(first + begin); s < static_cast<std::size_t>(first + end); ++s) {
+          const std::size_t before = entries.vertices.size();
+          collector->collect(s, entries);
+          maps.indptr[s + 1] = static_cast<Offset>(entries.vertices.size() - before);
+        }
         const detail::Lock lock(mutex);
-        if (!idle.empty()) collector = std::move(idle.back()), idle.pop_back();
-      }
-      if (!collector) collector = std::make_unique<Collector>(graph, sources, options, make_coordinates());
-      LocalEntries& entries = chunks[static_cast<std::size_t>(begin / chunk)];
-      for (Offset s = begin; s < end; ++s) {
-        const std::size_t before = entries.vertices.size();
-        collector->collect(static_cast<std::size_t>(s), entries);
-        indptr[static_cast<std::size_t>(s) + 1] = static_cast<Offset>(entries.vertices.size() - before);
-      }
-      entries.vertices.shrink_to_fit(), entries.distances.shrink_to_fit();
-      entries.logs.shrink_to_fit(), entries.transports.shrink_to_fit(), entries.quality.shrink_to_fit();
-      const detail::Lock lock(mutex);
-      idle.push_back(std::move(collector));
-      done += end - begin;
-      options.heat.progress.step("solve", static_cast<double>(done) / static_cast<double>(n));
-    });
-    idle.clear();
-    for (std::size_t s = 0; s < sources.size(); ++s) indptr[s + 1] += indptr[s];
-    return joined(graph, std::move(indptr), chunks, options.heat.threads);
+        idle.push_back(std::move(collector));
+        done += end - begin;
+        options.heat.progress.step("solve", static_cast<double>(done) / static_cast<double>(n));
+      });
+      if (first + count == n) idle.clear();
+      std::size_t found = 0;
+      for (const LocalEntries& entries : chunks) found += entries.vertices.size();
+      append(graph, chunks, found * static_cast<std::size_t>((n + count - 1) / count), maps, options.heat.threads);
+    }
+    std::partial_sum(maps.indptr.begin(), maps.indptr.end(), maps.indptr.begin());
+    return maps;
   });
 }
 

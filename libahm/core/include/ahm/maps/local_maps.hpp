@@ -53,6 +53,8 @@ struct LocalMapOptions {
   /// Polar maps use `threads` and `progress` only. Heat: the mean edge length h is measured on the whole graph.
   DiffusionOptions heat = {};
   std::size_t memory = 0;  ///< bytes available for the result; 0: the memory of the machine
+  /// Whether a vertex may be a neighbor; `k` counts only these. Empty: all. Must be safe to call from several threads.
+  std::function<bool(Vertex)> is_neighbor = {};
 };
 
 /// Local maps of many sources in compressed rows: source s has the entries indptr[s] .. indptr[s + 1], nearest first.
