@@ -27,7 +27,7 @@ std::optional<Vec3> BallPlacer::center(const Vec3& contact, const Vec3& axis, st
   const Vec3 up = common_direction(normals);
   const Vec3 above = contact + height * radius_ * (norm(up) > least ? normalized(up) : axis);
   const std::optional<Vec3> result = along_axis(contact, axis);
-  return result && are_connected(above, *result) ? result : std::nullopt;
+  return result && are_connected(*result, above) ? result : std::nullopt;
 }
 
 bool BallPlacer::fits(const Vec3& center, const Vec3& nearest, double radius) const {
