@@ -13,7 +13,7 @@ using exact::MeshPoint;
 
 /// Positions that are closer than this are one place, times the radius of the ball.
 constexpr double same_place = 10 * BallPlacer::tolerance;
-/// Axes that differ by a larger cosine are one axis.
+/// Axes are one axis if the cosine between them is larger.
 constexpr double same_axis = 0.99;
 
 /// Distance of a point from a segment, and its place on the segment, from 0 to 1.
