@@ -506,6 +506,22 @@ TEST(ToolPath, EndsWhereABallDoesNotFit) {
   }
 }
 
+TEST(ToolPath, ABallStaysOutOfAnAcuteGroove) {
+  // A groove of width 2 and depth 4. Mean normals near its bottom can point into a wall.
+  Mesh groove;
+  for (const double z : {0.0, 6.0})
+    for (const Vec2& p : {Vec2{0, 5}, {5, 5}, {6, 1}, {7, 5}, {12, 5}}) groove.positions.push_back({p[0], p[1], z});
+  for (Index k = 0; k < 4; ++k) groove.faces.insert(groove.faces.end(), {{k, k + 5, k + 6}, {k, k + 6, k + 1}});
+  const auto surface = surface_of(groove);
+  for (const double offset : {0.2, 0.7, 2.1}) {
+    const ToolPath path =
+        tool_path(surface, {.spacing = 0.35, .seed = PlaneSeed{{0, 0, 3}, {0, 0, 1}}, .offset = offset});
+    for (const ToolPose& p : path.poses)
+      EXPECT_GT(p.position[1], 5 - std::max(0.0, 4 * (1 - std::abs(p.position[0] - 6)))) << offset;
+    EXPECT_GE(path.passes.size(), 20U);
+  }
+}
+
 TEST(ToolPath, OfABallThatIsTooLargeIsRefused) {
   Mesh inside = icosphere(4);
   for (Triangle& f : inside.faces) std::swap(f[0], f[1]);

@@ -46,7 +46,7 @@ Row RowTree::nearest(const Vec3& position) const {
   return best.entry != nullptr ? best.entry->row : Row{};
 }
 
-void RowTree::visitor(const Entry& entry, const Vec3& position, Best& best) {
+void RowTree::consider(const Entry& entry, const Vec3& position, Best& best) {
   const double away = distance(entry.position, position);
   const bool first = away == best.distance && best.entry != nullptr && entry.vertex < best.entry->vertex;
   if (away < best.distance || first) best = {away, &entry};
@@ -54,12 +54,12 @@ void RowTree::visitor(const Entry& entry, const Vec3& position, Best& best) {
 
 void RowTree::search(std::size_t begin, std::size_t end, const Vec3& position, Best& best) const {
   if (end - begin <= leaf) {
-    for (std::size_t k = begin; k < end; ++k) visitor(entries_[k], position, best);
+    for (std::size_t k = begin; k < end; ++k) consider(entries_[k], position, best);
     return;
   }
   const std::size_t half = begin + (end - begin) / 2, axis = axis_[half];
   const double beyond = position[axis] - entries_[half].position[axis];
-  visitor(entries_[half], position, best);
+  consider(entries_[half], position, best);
   beyond < 0 ? search(begin, half, position, best) : search(half + 1, end, position, best);
   if (std::abs(beyond) > best.distance) return;
   beyond < 0 ? search(half + 1, end, position, best) : search(begin, half, position, best);

@@ -32,7 +32,8 @@ class RowTree {
     const Entry* entry;
   };
 
-  static void visitor(const Entry& entry, const Vec3& position, Best& best);
+  /// Replaces the best entry by a nearer one.
+  static void consider(const Entry& entry, const Vec3& position, Best& best);
   void build(std::size_t begin, std::size_t end);
   void search(std::size_t begin, std::size_t end, const Vec3& position, Best& best) const;
 

@@ -13,11 +13,9 @@ namespace ahm {
 
 using exact::MeshPoint;
 
-void check_positive(const std::string& name, double value) {
-  if (!(value > 0 && std::isfinite(value)))
-    throw InvalidArgument(name + " is " + detail::number(value) + "; it must be finite and > 0");
-}
+namespace {
 
+/// The point of a surface nearest to a position.
 SurfacePoint point_near(const Surface& surface, const Vec3& position, double spacing, const std::string& name,
                         std::string_view fault) {
   const ClosestPoint closest = surface.closest_point(position);
@@ -26,6 +24,13 @@ SurfacePoint point_near(const Surface& surface, const Vec3& position, double spa
         fault, name + " is " + detail::number(closest.distance) + " from the surface, more than half of the spacing",
         "use a point on the surface");
   return closest.point;
+}
+
+}  // namespace
+
+void check_positive(const std::string& name, double value) {
+  if (!(value > 0 && std::isfinite(value)))
+    throw InvalidArgument(name + " is " + detail::number(value) + "; it must be finite and > 0");
 }
 
 SurfacePoint surface_point(const Surface& surface, const CurvePoint& point, double spacing, const std::string& name,

@@ -18,18 +18,16 @@ inline constexpr double largest_curve_distance = 0.5;
 /// @throws InvalidArgument (not finite, or not > 0)
 void check_positive(const std::string& name, double value);
 
-/// The point of a surface nearest to a position.
+/// The point of an option on the surface. A position is moved to the nearest point.
 /// @param name   of the point, for messages
 /// @param fault  name of the error, a literal
-/// @throws InvalidArgument (farther than half a spacing)
-SurfacePoint point_near(const Surface& surface, const Vec3& position, double spacing, const std::string& name,
-                        std::string_view fault);
+/// @throws InvalidArgument (a position farther than half a spacing)
 SurfacePoint surface_point(const Surface& surface, const CurvePoint& point, double spacing, const std::string& name,
                            std::string_view fault);
 
 /// The points of a curve, joined on the surface.
 /// @param name   of the curve, for messages: "seed"
-/// @throws InvalidArgument (as `point_near`)
+/// @throws InvalidArgument (as `surface_point`)
 SurfaceCurve drawn_curve(const Surface& surface, std::span<const Vec3> positions, bool closed, double spacing,
                          const std::string& name, std::string_view fault);
 

@@ -8,7 +8,6 @@
 
 namespace ahm {
 
-/// A unit vector perpendicular to another one.
 Vec3 any_perpendicular(const Vec3& axis) {
   const Vec3 any = std::abs(axis[0]) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
   return normalized(any - dot(any, axis) * axis);

@@ -11,9 +11,9 @@ namespace {
 
 using exact::MeshPoint;
 
-/// The center of a ball is known up to this share of its radius. Positions that are closer than ten times that are one place.
-constexpr double ball_tolerance = 1e-4;
-/// Axes that differ by a larger cosine are one axis.
+/// Positions that are closer than this are one place, times the radius of the ball.
+constexpr double same_place = 10 * BallPlacer::tolerance;
+/// Axes are one axis if the cosine between them is larger.
 constexpr double same_axis = 0.99;
 
 /// Distance of a point from a segment, and its place on the segment, from 0 to 1.
@@ -60,13 +60,13 @@ Vec3 SmoothNormals::at(const MeshPoint& point) const {
 }
 
 ToolPlacer::ToolPlacer(const MeshTree& part, const FaceMesh& mesh, const Options& options)
-    : part_(part), mesh_(mesh), options_(options), normals_(mesh, options.tool_radius) {}
+    : ball_(part, options.offset), mesh_(mesh), options_(options), normals_(mesh, options.tool_radius) {}
 
 std::optional<Spot> ToolPlacer::at(const MeshPoint& point) const {
   Spot spot{point, mesh_.position(point), {}, normals_.at(point)};
   spot.position = spot.contact;
   if (options_.offset == 0) return spot;
-  const std::optional<Vec3> center = ball_center(spot.contact, spot.axis);
+  const std::optional<Vec3> center = ball_.center(spot.contact, spot.axis, normals_at(point));
   if (!center) return {};
   spot.position = *center;
   return spot;
@@ -89,28 +89,22 @@ std::vector<Track> ToolPlacer::tracks(const MeshCurve& curve) const {
   return {std::move(track)};
 }
 
-/// The center of a ball that touches the surface from above, near a point. Where the ball along the axis would intersect the
-/// surface, a small ball grows and moves away from it. None: it does not fit.
-std::optional<Vec3> ToolPlacer::ball_center(const Vec3& contact, const Vec3& axis) const {
-  constexpr int stages = 8, max_moves = 40;
-  const auto fits = [&](const Vec3& center, const Vec3& nearest, double radius) {
-    return distance(center, nearest) >= (1 - ball_tolerance) * radius;
-  };
-  const Vec3 upright = contact + options_.offset * axis;
-  if (fits(upright, part_.nearest_position(upright), options_.offset)) return upright;  // it contains the smaller ones
-  Vec3 center = contact;
-  for (int stage = 1; stage <= stages; ++stage) {
-    const double radius = stage * options_.offset / stages;
-    center = center + (options_.offset / stages) * axis;
-    for (int move = 0;; ++move) {
-      const Vec3 nearest = part_.nearest_position(center);
-      if (fits(center, nearest, radius)) break;
-      const double away = distance(center, nearest);
-      if (move == max_moves || !(away > 0)) return {};
-      center = nearest + (radius / away) * (center - nearest);
+/// The unit normals of the faces at a point.
+std::vector<Vec3> ToolPlacer::normals_at(const MeshPoint& point) const {
+  const double on_side = same_place * options_.offset;
+  const Vec3 position = mesh_.position(point);
+  std::vector<Index> faces{point.face};
+  std::vector<Vec3> result;
+  for (std::size_t k = 0; k < faces.size(); ++k) {
+    result.push_back(normalized(mesh_.area_normal(faces[k])));
+    for (std::size_t h = 3 * to_size(faces[k]); h < 3 * to_size(faces[k]) + 3; ++h) {
+      const Vec3 tail = mesh_.points[to_size(mesh_.tail(static_cast<detail::Half>(h)))],
+                 head = mesh_.points[to_size(mesh_.head(static_cast<detail::Half>(h)))];
+      if (mesh_.twin[h] < 0 || deviation(position, tail, head).distance > on_side) continue;
+      if (std::ranges::find(faces, mesh_.twin[h] / 3) == faces.end()) faces.push_back(mesh_.twin[h] / 3);
     }
   }
-  return center;
+  return result;
 }
 
 /// @param points  consecutive ones lie in the face of the first
@@ -142,7 +136,7 @@ std::vector<Track> ToolPlacer::offset_tracks(const std::vector<MeshPoint>& point
 
 /// Appends a pose to an offset track. In concave places, the tool turns without moving.
 void ToolPlacer::append(Spot spot, Track& track) const {
-  if (!track.empty() && distance(track.back().position, spot.position) < 10 * ball_tolerance * options_.offset)
+  if (!track.empty() && distance(track.back().position, spot.position) < same_place * options_.offset)
     spot.position = track.back().position;
   track.push_back(spot);
 }

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "tool_path/ball.hpp"
 #include "tool_path/passes.hpp"
 
 namespace ahm {
@@ -49,13 +50,13 @@ class ToolPlacer {
   std::vector<Track> tracks(const MeshCurve& curve) const;
 
  private:
-  std::optional<Vec3> ball_center(const Vec3& contact, const Vec3& axis) const;
+  std::vector<Vec3> normals_at(const exact::MeshPoint& point) const;
   std::vector<Track> offset_tracks(const std::vector<exact::MeshPoint>& points) const;
   void append(Spot spot, Track& track) const;
   void refine(const Spot& from, const Spot& to, int depth, std::vector<Track>& tracks) const;
   std::vector<std::size_t> simplified(const std::vector<Vec3>& path, const Track* axes) const;
 
-  const MeshTree& part_;
+  BallPlacer ball_;
   const FaceMesh& mesh_;
   Options options_;
   SmoothNormals normals_;

@@ -1,0 +1,42 @@
+/// \file
+/// Balls that touch a surface from one side. Lengths are in spacings.
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "tool_path/fine_mesh.hpp"
+
+namespace ahm {
+
+/// A vector whose products with unit vectors are at least its squared length, and as large as possible: the point of their convex
+/// hull that is nearest to zero. Near zero: no direction has positive products with all of them.
+/// @param directions  at least one
+Vec3 common_direction(std::span<const Vec3> directions);
+
+/// Finds the center of a ball that touches a surface from above.
+class BallPlacer {
+ public:
+  /// The center is known up to this share of the radius.
+  static constexpr double tolerance = 1e-4;
+
+  /// @param part  the surface; must outlive the placer
+  BallPlacer(const MeshTree& part, double radius) : part_(part), radius_(radius) {}
+
+  double radius() const { return radius_; }
+  /// A center near the one along the axis; none: no place was found where the ball fits, and that the surface does not separate
+  /// from the contact.
+  /// @param axis     unit vector: the preferred direction of the center
+  /// @param normals  unit normals of the faces at the contact, at least one
+  std::optional<Vec3> center(const Vec3& contact, const Vec3& axis, std::span<const Vec3> normals) const;
+
+ private:
+  bool fits(const Vec3& center, const Vec3& nearest, double radius) const;
+  std::optional<Vec3> along_axis(const Vec3& contact, const Vec3& axis) const;
+  bool are_connected(const Vec3& from, const Vec3& to) const;
+
+  const MeshTree& part_;
+  double radius_;
+};
+
+}  // namespace ahm
