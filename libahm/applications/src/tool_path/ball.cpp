@@ -6,41 +6,44 @@
 
 namespace ahm {
 
-Vec3 common_direction(std::span<const Vec3> directions) {
-  constexpr int max_steps = 50;
-  constexpr double converged = 1e-9;
-  Vec3 result = directions.front();
-  for (int step = 0; step < max_steps; ++step) {  // Frank and Wolfe's method
-    const Vec3 farthest = *std::ranges::min_element(directions, {}, [&](const Vec3& d) { return dot(result, d); });
-    const Vec3 change = farthest - result;
-    if (-dot(result, change) < converged) break;
-    result = result + std::clamp(-dot(result, change) / dot(change, change), 0.0, 1.0) * change;
+namespace {
+
+/// The axis, turned until it points away from all faces at the contact. Mean normals do not always, at sharp edges and in grooves.
+Vec3 away_from(std::span<const Vec3> normals, Vec3 axis) {
+  constexpr double least = 0.1;  // six degrees
+  constexpr int max_steps = 20;  // in the most acute grooves, there is no such direction
+  for (int step = 0; step < max_steps; ++step) {
+    const Vec3 normal = *std::ranges::min_element(normals, {}, [&](const Vec3& n) { return dot(axis, n); });
+    const double height = dot(axis, normal);
+    if (height >= least) break;
+    const Vec3 turned = axis + (1.01 * least - height) * normal;
+    if (norm(turned) < least) break;
+    axis = normalized(turned);
   }
-  return result;
+  return axis;
 }
 
+}  // namespace
+
 std::optional<Vec3> BallPlacer::center(const Vec3& contact, const Vec3& axis, std::span<const Vec3> normals) const {
-  const Vec3 upright = contact + radius_ * axis;
+  const Vec3 direction = away_from(normals, axis), upright = contact + radius_ * direction;
   if (fits(upright, part_.nearest_position(upright), radius_)) return upright;
-  // A place above the contact. Mean normals can point into the other wall of a groove.
-  constexpr double height = 1e-4, least = 1e-3;
-  const Vec3 up = common_direction(normals);
-  const Vec3 above = contact + height * radius_ * (norm(up) > least ? normalized(up) : axis);
-  const std::optional<Vec3> result = along_axis(contact, axis);
-  return result && are_connected(*result, above) ? result : std::nullopt;
+  constexpr double height = 1e-4;
+  const std::optional<Vec3> result = grown(contact, direction);
+  return result && are_connected(*result, contact + height * radius_ * direction) ? result : std::nullopt;
 }
 
 bool BallPlacer::fits(const Vec3& center, const Vec3& nearest, double radius) const {
   return distance(center, nearest) >= (1 - tolerance) * radius;
 }
 
-/// A small ball grows along the axis, and moves away from what it would intersect. It can jump through the surface.
-std::optional<Vec3> BallPlacer::along_axis(const Vec3& contact, const Vec3& axis) const {
+/// A small ball grows in a direction, and moves away from what it would intersect. It can jump through the surface.
+std::optional<Vec3> BallPlacer::grown(const Vec3& contact, const Vec3& direction) const {
   constexpr int stages = 8, max_moves = 40;
   Vec3 center = contact;
   for (int stage = 1; stage <= stages; ++stage) {
     const double radius = stage * radius_ / stages;
-    center = center + (radius_ / stages) * axis;
+    center = center + (radius_ / stages) * direction;
     for (int move = 0;; ++move) {
       const Vec3 nearest = part_.nearest_position(center);
       if (fits(center, nearest, radius)) break;

@@ -9,11 +9,6 @@
 
 namespace ahm {
 
-/// A vector whose products with unit vectors are at least its squared length, and as large as possible: the point of their convex
-/// hull that is nearest to zero. Near zero: no direction has positive products with all of them.
-/// @param directions  at least one
-Vec3 common_direction(std::span<const Vec3> directions);
-
 /// Finds the center of a ball that touches a surface from above.
 class BallPlacer {
  public:
@@ -32,7 +27,7 @@ class BallPlacer {
 
  private:
   bool fits(const Vec3& center, const Vec3& nearest, double radius) const;
-  std::optional<Vec3> along_axis(const Vec3& contact, const Vec3& axis) const;
+  std::optional<Vec3> grown(const Vec3& contact, const Vec3& direction) const;
   bool are_connected(const Vec3& from, const Vec3& to) const;
 
   const MeshTree& part_;

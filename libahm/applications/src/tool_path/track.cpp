@@ -1,6 +1,7 @@
 #include "tool_path/track.hpp"
 
 #include <algorithm>
+#include <span>
 #include <unordered_set>
 
 #include "ahm/util/small_math.hpp"
@@ -15,6 +16,11 @@ using exact::MeshPoint;
 constexpr double same_place = 10 * BallPlacer::tolerance;
 /// Axes are one axis if the cosine between them is larger.
 constexpr double same_axis = 0.99;
+
+/// Length of the difference of two axes between which the path needs another pose (20 degrees), and which are one axis.
+constexpr double largest_turn = 0.35, least_turn = 1e-3;
+/// Bisections of the curve between two samples, and then of the turn of the axis.
+constexpr int max_depth = 6;
 
 /// Distance of a point from a segment, and its place on the segment, from 0 to 1.
 struct Deviation {
@@ -62,11 +68,13 @@ Vec3 SmoothNormals::at(const MeshPoint& point) const {
 ToolPlacer::ToolPlacer(const MeshTree& part, const FaceMesh& mesh, const Options& options)
     : ball_(part, options.offset), mesh_(mesh), options_(options), normals_(mesh, options.tool_radius) {}
 
-std::optional<Spot> ToolPlacer::at(const MeshPoint& point) const {
-  Spot spot{point, mesh_.position(point), {}, normals_.at(point)};
+std::optional<Spot> ToolPlacer::at(const MeshPoint& point) const { return at(point, normals_.at(point)); }
+
+std::optional<Spot> ToolPlacer::at(const MeshPoint& point, const Vec3& axis) const {
+  Spot spot{point, mesh_.position(point), {}, axis};
   spot.position = spot.contact;
   if (options_.offset == 0) return spot;
-  const std::optional<Vec3> center = ball_.center(spot.contact, spot.axis, normals_at(point));
+  const std::optional<Vec3> center = ball_.center(spot.contact, axis, normals_at(point));
   if (!center) return {};
   spot.position = *center;
   return spot;
@@ -75,18 +83,25 @@ std::optional<Spot> ToolPlacer::at(const MeshPoint& point) const {
 std::vector<Track> ToolPlacer::tracks(const MeshCurve& curve) const {
   std::vector<MeshPoint> points = samples(mesh_, curve, options_.step);
   if (curve.closed) points.push_back(points.front());
-  if (options_.offset > 0) {
-    std::vector<Track> result = offset_tracks(points);
-    const bool is_whole = result.size() == 1 && result[0].front().contact == mesh_.position(points.front());
-    if (curve.closed && is_whole && result[0].back().position != result[0].front().position)
-      result[0].push_back(result[0].front());
-    return result;
+  std::vector<Track> result(1);
+  std::optional<Spot> before;
+  for (const MeshPoint& point : points) {  // consecutive points lie in the face of the first
+    const std::optional<Spot> spot = at(point);
+    if (!spot) {
+      if (!result.back().empty()) result.emplace_back();
+    } else if (before) {
+      refine(*before, *spot, max_depth, result);
+    } else {
+      append(*spot, result.back());
+    }
+    before = spot;
   }
-  std::vector<Vec3> positions;
-  for (const MeshPoint& point : points) positions.push_back(mesh_.position(point));
-  Track track;
-  for (const std::size_t k : simplified(positions, nullptr)) track.push_back(*at(points[k]));
-  return {std::move(track)};
+  if (result.back().empty()) result.pop_back();
+  for (Track& track : result) track = simplified(track);
+  const bool is_whole = result.size() == 1 && result[0].front().contact == mesh_.position(points.front());
+  if (curve.closed && is_whole && result[0].back().position != result[0].front().position)
+    result[0].push_back(result[0].front());
+  return result;
 }
 
 /// The unit normals of the faces at a point.
@@ -107,33 +122,6 @@ std::vector<Vec3> ToolPlacer::normals_at(const MeshPoint& point) const {
   return result;
 }
 
-/// @param points  consecutive ones lie in the face of the first
-std::vector<Track> ToolPlacer::offset_tracks(const std::vector<MeshPoint>& points) const {
-  std::vector<Track> result(1);
-  std::optional<Spot> before;
-  constexpr int max_depth = 6;
-  for (const MeshPoint& point : points) {
-    const std::optional<Spot> spot = at(point);
-    if (!spot) {
-      if (!result.back().empty()) result.emplace_back();
-    } else if (before) {
-      refine(*before, *spot, max_depth, result);
-    } else {
-      append(*spot, result.back());
-    }
-    before = spot;
-  }
-  if (result.back().empty()) result.pop_back();
-  for (Track& track : result) {
-    std::vector<Vec3> positions;
-    for (const Spot& spot : track) positions.push_back(spot.position);
-    Track kept;
-    for (const std::size_t k : simplified(positions, &track)) kept.push_back(track[k]);
-    track = std::move(kept);
-  }
-  return result;
-}
-
 /// Appends a pose to an offset track. In concave places, the tool turns without moving.
 void ToolPlacer::append(Spot spot, Track& track) const {
   if (!track.empty() && distance(track.back().position, spot.position) < same_place * options_.offset)
@@ -141,23 +129,29 @@ void ToolPlacer::append(Spot spot, Track& track) const {
   track.push_back(spot);
 }
 
-/// Appends poses up to `to`. Between the two it adds as many as the step and the chord error require.
+/// Appends poses up to `to`. Between the two it adds as many as the step, the chord error and the turn of the axis require.
+/// @param depth  number of bisections of the curve that remain; <= 0: the tool turns at one point
 void ToolPlacer::refine(const Spot& from, const Spot& to, int depth, std::vector<Track>& tracks) const {
   const auto is_along_axis = [&](const Spot& spot) {
-    return distance(spot.position, spot.contact + options_.offset * spot.axis) < 1e-3 * options_.offset;
+    return distance(spot.position, spot.contact + options_.offset * spot.axis) <= 1e-3 * options_.offset;
   };
-  const double tolerance = 0.5 * options_.chord_error;  // the simplification adds the other half
+  const double tolerance = 0.25 * options_.chord_error;  // tested in the middle; the simplification adds a half
   const Vec3& start = tracks.back().back().position;
   const double chord = distance(start, to.position), turn = distance(from.axis, to.axis);
+  const bool is_near = chord <= options_.step && turn <= largest_turn;
   // Between balls that touch the surface along their axes, the center moves on an arc.
-  const bool is_arc = is_along_axis(from) && is_along_axis(to) && turn < 1;
-  const bool is_near = chord <= options_.step;
-  if (is_near && (depth == 0 || (is_arc && options_.offset * turn * turn / 8 <= tolerance)))
+  const bool is_arc = is_along_axis(from) && is_along_axis(to);
+  const Vec3 sum = from.axis + to.axis;
+  const bool can_turn = depth > -max_depth && turn > least_turn && norm(sum) > least_turn;
+  if (is_near && ((depth <= 0 && !can_turn) || (is_arc && options_.offset * turn * turn / 8 <= tolerance)))
     return append(to, tracks.back());
-  const std::optional<Spot> middle =
-      depth > 0 ? at(between(from.point, in_face(mesh_, to.point, from.point.face), 0.5)) : std::nullopt;
+  std::optional<Spot> middle;
+  if (depth > 0)
+    middle = at(between(from.point, in_face(mesh_, to.point, from.point.face), 0.5));
+  else if (can_turn)
+    middle = at(from.point, normalized(sum));
   if (!middle) {  // the ball does not fit there, or jumps
-    tracks.emplace_back();
+    if (options_.offset > 0) tracks.emplace_back();
     return append(to, tracks.back());
   }
   const Deviation off = deviation(middle->position, start, to.position);
@@ -167,25 +161,24 @@ void ToolPlacer::refine(const Spot& from, const Spot& to, int depth, std::vector
   refine(*middle, to, depth - 1, tracks);
 }
 
-/// Numbers of the points that remain where chords replace others. Chords are at most a step long, and stay within a tolerance of
-/// the points between their ends, and of their axes.
-/// @param axes  the axes at the points; nullptr: the path is on the surface, and points at one place are one pose
-std::vector<std::size_t> ToolPlacer::simplified(const std::vector<Vec3>& path, const Track* axes) const {
-  const double tolerance = (axes ? 0.5 : 1) * options_.chord_error;
-  const auto fits = [&](std::size_t from, std::size_t to) {
-    if (distance(path[from], path[to]) > options_.step) return false;
-    for (std::size_t k = from + 1; k < to; ++k) {
-      const Deviation off = deviation(path[k], path[from], path[to]);
-      if (off.distance > tolerance) return false;
-      if (axes && !follows((*axes)[k].axis, (*axes)[from].axis, (*axes)[to].axis, off.share)) return false;
-    }
-    return true;
+/// The poses that remain where chords replace others. Chords are at most a step long, and stay near the poses between their ends, and
+/// their axes.
+Track ToolPlacer::simplified(const Track& track) const {
+  const double tolerance = (options_.offset > 0 ? 0.5 : 1) * options_.chord_error;  // `refine` uses the rest
+  const auto fits = [&](const Spot& from, std::span<const Spot> inner, const Spot& to) {
+    if (distance(from.position, to.position) > options_.step || distance(from.axis, to.axis) > largest_turn)
+      return false;
+    return std::ranges::all_of(inner, [&](const Spot& spot) {
+      const Deviation off = deviation(spot.position, from.position, to.position);
+      return off.distance <= tolerance && follows(spot.axis, from.axis, to.axis, off.share);
+    });
   };
-  std::vector<std::size_t> result{0};
-  for (std::size_t from = 0; from + 1 < path.size();) {
+  const std::span<const Spot> all(track);
+  Track result{track.front()};
+  for (std::size_t from = 0; from + 1 < track.size();) {
     std::size_t to = from + 1;
-    while (to + 1 < path.size() && fits(from, to + 1)) ++to;
-    if (axes || to + 1 == path.size() || distance(path[to], path[from]) > 0) result.push_back(to);
+    while (to + 1 < track.size() && fits(track[from], all.subspan(from + 1, to - from), track[to + 1])) ++to;
+    result.push_back(track[to]);
     from = to;
   }
   return result;

@@ -50,11 +50,11 @@ class ToolPlacer {
   std::vector<Track> tracks(const MeshCurve& curve) const;
 
  private:
+  std::optional<Spot> at(const exact::MeshPoint& point, const Vec3& axis) const;
   std::vector<Vec3> normals_at(const exact::MeshPoint& point) const;
-  std::vector<Track> offset_tracks(const std::vector<exact::MeshPoint>& points) const;
   void append(Spot spot, Track& track) const;
   void refine(const Spot& from, const Spot& to, int depth, std::vector<Track>& tracks) const;
-  std::vector<std::size_t> simplified(const std::vector<Vec3>& path, const Track* axes) const;
+  Track simplified(const Track& track) const;
 
   BallPlacer ball_;
   const FaceMesh& mesh_;
