@@ -72,7 +72,7 @@ void expect_path(const Mesh& mesh, double spacing, const ToolPathSeed& seed = Au
     EXPECT_NEAR(p.arclength - before.arclength, norm(p.position - before.position), 1e-9 * p.arclength + 1e-12);
     if (p.kind == ToolMotion::pass && before.kind == ToolMotion::pass && p.pass == before.pass) {
       EXPECT_LE(norm(p.position - before.position), 0.25 * spacing * (1 + 1e-9));
-      EXPECT_GT(dot(p.axis, before.axis), 0.5);  // smoothed over half a spacing, also at right-angled edges
+      EXPECT_GT(dot(p.axis, before.axis), 0.938);  // 20 degrees, at edges too
       continue;
     }
     if (p.kind == ToolMotion::pass) continue;
@@ -492,7 +492,17 @@ TEST(ToolPath, OffsetIsTheCenterOfABall) {
   // In the corner, the ball follows the two lines that are half a unit from floor and wall: no loop.
   const auto corner = surface_of(corner_of_two_walls());
   const ToolPath path = measure(corner, across);
-  for (const ToolPass& pass : path.passes) EXPECT_NEAR(pass.length, 2 * (4 - offset), 1e-3);
+  for (const ToolPass& pass : path.passes) {
+    double walked = 0;
+    for (std::size_t k = pass.begin; k < pass.end; ++k) {
+      const Vec3& p = path.poses[k].position;
+      EXPECT_NEAR(std::min(p[0], p[2]), offset, 1e-4);
+      if (k == pass.begin) continue;
+      const Vec3 step = p - path.poses[k - 1].position;
+      walked += std::abs(step[0]) + std::abs(step[2]);
+    }
+    EXPECT_NEAR(walked, 2 * (4 - offset), 1e-3);
+  }
 }
 
 TEST(ToolPath, EndsWhereABallDoesNotFit) {
@@ -503,6 +513,26 @@ TEST(ToolPath, EndsWhereABallDoesNotFit) {
     const ToolPose &a = path.poses[k - 1], &b = path.poses[k];
     if (a.kind != ToolMotion::pass || b.kind != ToolMotion::pass || a.pass != b.pass) continue;
     EXPECT_GE(surface.closest_point(0.5 * (a.position + b.position)).distance, 0.4);
+  }
+}
+
+TEST(ToolPath, ABallRollsAroundSharpEdges) {
+  // A wedge of seven degrees: a ball fits everywhere, and no pass ends at the edge.
+  const Mesh wedge{{{0, 0, 0}, {10, 0, 0}, {0, 1.2, 0}, {0, 0, 6}, {10, 0, 6}, {0, 1.2, 6}},
+                   {{2, 1, 0}, {3, 4, 5}, {0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}, {2, 0, 3}, {2, 3, 5}}};
+  const auto surface = surface_of(wedge);
+  const std::size_t passes = tool_path(surface, {.spacing = 0.3}).passes.size();
+  for (const double offset : {0.02, 0.15}) {
+    const ToolPath path = tool_path(surface, {.spacing = 0.3, .offset = offset});
+    EXPECT_EQ(path.passes.size(), passes);
+    for (std::size_t k = 1; k < path.poses.size(); ++k) {
+      const ToolPose &a = path.poses[k - 1], &b = path.poses[k];
+      if (b.kind != ToolMotion::pass || a.kind != ToolMotion::pass) continue;
+      EXPECT_GT(dot(a.axis, b.axis), 0.938);
+      for (const double share : {0.25, 0.5, 0.75})
+        EXPECT_GE(surface.closest_point((1 - share) * a.position + share * b.position).distance,
+                  0.999 * offset - path.chord_error);
+    }
   }
 }
 
@@ -519,6 +549,8 @@ TEST(ToolPath, ABallStaysOutOfAnAcuteGroove) {
     for (const ToolPose& p : path.poses)
       EXPECT_GT(p.position[1], 5 - std::max(0.0, 4 * (1 - std::abs(p.position[0] - 6)))) << offset;
     EXPECT_GE(path.passes.size(), 20U);
+    EXPECT_LE(path.passes.size(), 40U);
+    EXPECT_GE(tool_path_measures(surface, path).covered, 0.99);
   }
 }
 

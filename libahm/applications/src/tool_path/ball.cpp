@@ -6,12 +6,9 @@
 
 namespace ahm {
 
-namespace {
-
-/// The axis, turned until it points away from all faces at the contact. Mean normals do not always, at sharp edges and in grooves.
-Vec3 away_from(std::span<const Vec3> normals, Vec3 axis) {
-  constexpr double least = 0.1;  // six degrees
-  constexpr int max_steps = 20;  // in the most acute grooves, there is no such direction
+Vec3 turned_away(std::span<const Vec3> normals, Vec3 axis) {
+  constexpr double least = 0.1;
+  constexpr int max_steps = 20;
   for (int step = 0; step < max_steps; ++step) {
     const Vec3 normal = *std::ranges::min_element(normals, {}, [&](const Vec3& n) { return dot(axis, n); });
     const double height = dot(axis, normal);
@@ -23,10 +20,8 @@ Vec3 away_from(std::span<const Vec3> normals, Vec3 axis) {
   return axis;
 }
 
-}  // namespace
-
-std::optional<Vec3> BallPlacer::center(const Vec3& contact, const Vec3& axis, std::span<const Vec3> normals) const {
-  const Vec3 direction = away_from(normals, axis), upright = contact + radius_ * direction;
+std::optional<Vec3> BallPlacer::center(const Vec3& contact, const Vec3& direction) const {
+  const Vec3 upright = contact + radius_ * direction;
   if (fits(upright, part_.nearest_position(upright), radius_)) return upright;
   constexpr double height = 1e-4;
   const std::optional<Vec3> result = grown(contact, direction);
@@ -37,13 +32,18 @@ bool BallPlacer::fits(const Vec3& center, const Vec3& nearest, double radius) co
   return distance(center, nearest) >= (1 - tolerance) * radius;
 }
 
-/// A small ball grows in a direction, and moves away from what it would intersect. It can jump through the surface.
+/// A small ball grows in a direction, and moves away from what it would intersect. It can jump through the surface. The same sizes
+/// everywhere keep the path continuous.
 std::optional<Vec3> BallPlacer::grown(const Vec3& contact, const Vec3& direction) const {
-  constexpr int stages = 8, max_moves = 40;
+  constexpr double first = 1.0 / 64,
+                   growth = 1.5;  // where a ball fits, the next one moves by less than the width of a groove
+  constexpr int max_moves = 100;
+  double radius = 0;
   Vec3 center = contact;
-  for (int stage = 1; stage <= stages; ++stage) {
-    const double radius = stage * radius_ / stages;
-    center = center + (radius_ / stages) * direction;
+  while (radius < radius_) {
+    const double next = std::min(radius_, std::max(first * radius_, growth * radius));
+    center = center + (next - radius) * direction;
+    radius = next;
     for (int move = 0;; ++move) {
       const Vec3 nearest = part_.nearest_position(center);
       if (fits(center, nearest, radius)) break;

@@ -9,6 +9,11 @@
 
 namespace ahm {
 
+/// An axis, turned until it points away from all faces at a point by six degrees or more. Mean normals do not always, at sharp edges
+/// and in grooves. Where no direction does, as in the most acute grooves and edges, the last one of some steps.
+/// @param normals  unit normals of the faces, at least one
+Vec3 turned_away(std::span<const Vec3> normals, Vec3 axis);
+
 /// Finds the center of a ball that touches a surface from above.
 class BallPlacer {
  public:
@@ -19,11 +24,10 @@ class BallPlacer {
   BallPlacer(const MeshTree& part, double radius) : part_(part), radius_(radius) {}
 
   double radius() const { return radius_; }
-  /// A center near the one along the axis; none: no place was found where the ball fits, and that the surface does not separate
-  /// from the contact.
-  /// @param axis     unit vector: the preferred direction of the center
-  /// @param normals  unit normals of the faces at the contact, at least one
-  std::optional<Vec3> center(const Vec3& contact, const Vec3& axis, std::span<const Vec3> normals) const;
+  /// A center near the one in a direction; none: no place was found where the ball fits, and that the surface does not separate from
+  /// the contact.
+  /// @param direction  unit vector that points away from all faces at the contact
+  std::optional<Vec3> center(const Vec3& contact, const Vec3& direction) const;
 
  private:
   bool fits(const Vec3& center, const Vec3& nearest, double radius) const;

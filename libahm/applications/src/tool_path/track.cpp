@@ -1,6 +1,7 @@
 #include "tool_path/track.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 #include <unordered_set>
 
@@ -74,7 +75,8 @@ std::optional<Spot> ToolPlacer::at(const MeshPoint& point, const Vec3& axis) con
   Spot spot{point, mesh_.position(point), {}, axis};
   spot.position = spot.contact;
   if (options_.offset == 0) return spot;
-  const std::optional<Vec3> center = ball_.center(spot.contact, axis, normals_at(point));
+  spot.axis = turned_away(normals_at(point), axis);
+  const std::optional<Vec3> center = ball_.center(spot.contact, spot.axis);
   if (!center) return {};
   spot.position = *center;
   return spot;
@@ -129,6 +131,14 @@ void ToolPlacer::append(Spot spot, Track& track) const {
   track.push_back(spot);
 }
 
+/// A pose at one of two points that are close, with an axis between theirs: at the point where the tool can turn so.
+std::optional<Spot> ToolPlacer::turned(const Spot& from, const Spot& to) const {
+  const Vec3 axis = normalized(from.axis + to.axis);
+  const std::optional<Spot> first = at(from.point, axis), second = at(to.point, axis);
+  if (!first || !second) return first ? first : second;
+  return dot(first->axis, axis) >= dot(second->axis, axis) ? first : second;
+}
+
 /// Appends poses up to `to`. Between the two it adds as many as the step, the chord error and the turn of the axis require.
 /// @param depth  number of bisections of the curve that remain; <= 0: the tool turns at one point
 void ToolPlacer::refine(const Spot& from, const Spot& to, int depth, std::vector<Track>& tracks) const {
@@ -141,21 +151,21 @@ void ToolPlacer::refine(const Spot& from, const Spot& to, int depth, std::vector
   const bool is_near = chord <= options_.step && turn <= largest_turn;
   // Between balls that touch the surface along their axes, the center moves on an arc.
   const bool is_arc = is_along_axis(from) && is_along_axis(to);
-  const Vec3 sum = from.axis + to.axis;
-  const bool can_turn = depth > -max_depth && turn > least_turn && norm(sum) > least_turn;
+  const bool can_turn = depth > -max_depth && turn > least_turn && norm(from.axis + to.axis) > least_turn;
   if (is_near && ((depth <= 0 && !can_turn) || (is_arc && options_.offset * turn * turn / 8 <= tolerance)))
     return append(to, tracks.back());
   std::optional<Spot> middle;
   if (depth > 0)
     middle = at(between(from.point, in_face(mesh_, to.point, from.point.face), 0.5));
   else if (can_turn)
-    middle = at(from.point, normalized(sum));
+    middle = turned(from, to);
   if (!middle) {  // the ball does not fit there, or jumps
     if (options_.offset > 0) tracks.emplace_back();
     return append(to, tracks.back());
   }
   const Deviation off = deviation(middle->position, start, to.position);
-  if (is_near && off.distance <= tolerance && follows(middle->axis, from.axis, to.axis, off.share))
+  const bool tests_both_halves = chord <= tolerance || std::abs(off.share - 0.5) < 0.4;
+  if (is_near && tests_both_halves && off.distance <= tolerance && follows(middle->axis, from.axis, to.axis, off.share))
     return append(to, tracks.back());
   refine(from, *middle, depth - 1, tracks);
   refine(*middle, to, depth - 1, tracks);

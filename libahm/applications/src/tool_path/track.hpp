@@ -53,6 +53,7 @@ class ToolPlacer {
   std::optional<Spot> at(const exact::MeshPoint& point, const Vec3& axis) const;
   std::vector<Vec3> normals_at(const exact::MeshPoint& point) const;
   void append(Spot spot, Track& track) const;
+  std::optional<Spot> turned(const Spot& from, const Spot& to) const;
   void refine(const Spot& from, const Spot& to, int depth, std::vector<Track>& tracks) const;
   Track simplified(const Track& track) const;
 
