@@ -111,8 +111,10 @@ enum class ToolMotion {
 struct ToolPose {
   Vec3 position;  ///< at the offset from the surface, except for lifted links, approach and retreat; world units
   Vec3 contact;   ///< the point of the surface where the pose is; the position on lifted links, approach and retreat
-  Vec3 axis;      ///< unit vector away from the surface: the mean normal within the tool radius, with lead and tilt
-  Vec3 travel;    ///< unit vector perpendicular to the axis: direction of travel
+  /// Unit vector away from the surface: the mean normal within the tool radius, with lead and tilt. With an offset, it points away
+  /// from the faces at the contact by six degrees or more. Along a pass it turns by at most 20 degrees from pose to pose.
+  Vec3 axis;
+  Vec3 travel;  ///< unit vector perpendicular to the axis: direction of travel
   /// Rotation (w, x, y, z) that takes z to `axis` and x to `travel`. Signs are such that consecutive poses are close.
   std::array<double, 4> quaternion;
   Index pass;  ///< number of the pass; on links, that of the next pass

@@ -1,4 +1,4 @@
-#include "ahm/util/text.hpp"
+#include "ahm/applications/tool_path_text.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -7,8 +7,8 @@
 #include <limits>
 #include <numbers>
 
-#include "ahm/applications/tool_path_text.hpp"
 #include "ahm/error.hpp"
+#include "ahm/util/text.hpp"
 #include "ahm/util/vec.hpp"
 
 namespace ahm {
