@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
-#include <unordered_set>
 
 #include "ahm/util/small_math.hpp"
 #include "ahm/util/vec.hpp"
@@ -51,14 +50,14 @@ SmoothNormals::SmoothNormals(const FaceMesh& mesh, double radius) : mesh_(mesh),
 Vec3 SmoothNormals::at(const MeshPoint& point) const {
   const Vec3 position = mesh_.position(point);
   std::vector<Index> faces{point.face};
-  std::unordered_set<Index> seen{point.face};
   Vec3 sum{};
   for (std::size_t k = 0; k < faces.size(); ++k) {
     const double share = distance(centers_[to_size(faces[k])], position) / radius_;
     if (k > 0 && share >= 1) continue;
     sum = sum + std::max(1 - share * share, 1e-3) * normals_[to_size(faces[k])];
     for (std::size_t s = 0; s < 3; ++s)
-      if (const detail::Half twin = mesh_.twin[3 * to_size(faces[k]) + s]; twin >= 0 && seen.insert(twin / 3).second)
+      if (const detail::Half twin = mesh_.twin[3 * to_size(faces[k]) + s];
+          twin >= 0 && std::ranges::find(faces, twin / 3) == faces.end())  // there are few
         faces.push_back(twin / 3);
   }
   const double length = norm(sum);
