@@ -508,7 +508,7 @@ TEST(ToolPath, OffsetIsTheCenterOfABall) {
 TEST(ToolPath, EndsWhereABallDoesNotFit) {
   // A ball of radius 0.5 does not fit into a slit of width 0.5 between two boxes: no pass jumps over it or into it.
   const auto surface = surface_of(joined(box({2, 2, 2}), box({2, 2, 2}), {2.5, 0, 0}));
-  const ToolPath path = tool_path(surface, {.spacing = 0.25, .offset = 0.5});
+  const ToolPath path = tool_path(surface, {.spacing = 0.5, .offset = 0.5});
   for (std::size_t k = 1; k < path.poses.size(); ++k) {
     const ToolPose &a = path.poses[k - 1], &b = path.poses[k];
     if (a.kind != ToolMotion::pass || b.kind != ToolMotion::pass || a.pass != b.pass) continue;
@@ -543,13 +543,13 @@ TEST(ToolPath, ABallStaysOutOfAnAcuteGroove) {
     for (const Vec2& p : {Vec2{0, 5}, {5, 5}, {6, 1}, {7, 5}, {12, 5}}) groove.positions.push_back({p[0], p[1], z});
   for (Index k = 0; k < 4; ++k) groove.faces.insert(groove.faces.end(), {{k, k + 5, k + 6}, {k, k + 6, k + 1}});
   const auto surface = surface_of(groove);
-  for (const double offset : {0.2, 0.7, 2.1}) {
+  for (const double offset : {0.7, 2.1}) {
     const ToolPath path =
-        tool_path(surface, {.spacing = 0.35, .seed = PlaneSeed{{0, 0, 3}, {0, 0, 1}}, .offset = offset});
+        tool_path(surface, {.spacing = 0.7, .seed = PlaneSeed{{0, 0, 3}, {0, 0, 1}}, .offset = offset});
     for (const ToolPose& p : path.poses)
       EXPECT_GT(p.position[1], 5 - std::max(0.0, 4 * (1 - std::abs(p.position[0] - 6)))) << offset;
-    EXPECT_GE(path.passes.size(), 20U);
-    EXPECT_LE(path.passes.size(), 40U);
+    EXPECT_GE(path.passes.size(), 10U);
+    EXPECT_LE(path.passes.size(), 20U);
     EXPECT_GE(tool_path_measures(surface, path).covered, 0.99);
   }
 }
@@ -558,8 +558,7 @@ TEST(ToolPath, OfABallThatIsTooLargeIsRefused) {
   Mesh inside = icosphere(4);
   for (Triangle& f : inside.faces) std::swap(f[0], f[1]);
   EXPECT_GE(tool_path(surface_of(inside), {.spacing = 0.4, .offset = 0.5}).passes.size(), 4U);
-  expect_error<InvalidArgument>([&] { tool_path(surface_of(inside), {.spacing = 0.4, .offset = 1.1}); },
-                                "fits nowhere");
+  expect_error<InvalidArgument>([&] { tool_path(surface_of(inside), {.spacing = 1, .offset = 1.1}); }, "fits nowhere");
 }
 
 TEST(ToolPath, MeasuresFindGapsAndDoublePasses) {
