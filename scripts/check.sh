@@ -64,7 +64,8 @@ slow=("CholeskyFactor.SolvesAsEigens*" CloudEdges.DoNotDependOnTheNumberOfThread
   March.EndsWhereHeatDistancesAreBeyondAllNumbers March.HasNoHorizon March.TakesSeveralBands Normals.WithNoiseAreNoWorseThanNone
   Renderer.DoesNotDependOnTheNumberOfThreads SphereCloud.ConvergesOnRandomPointsInBothVariants
   Strategy.IsChosenFromTheNumberOfMapsAndTheMemory StreamedLogMap.ForgetsWhatTheFrontHasPassed StreamedLogMap.GoesOnFromTheEndOfAnyBand
-  ToolPath.ABallStaysOutOfAnAcuteGroove ToolPath.OfASmallDiscNeedsNothingElseOfTheSurface ToolPath.OffsetIsTheCenterOfABall
+  ToolPath.ABallRollsAroundSharpEdges ToolPath.ABallStaysOutOfAnAcuteGroove ToolPath.OfABallThatIsTooLargeIsRefused
+  ToolPath.OfASmallDiscNeedsNothingElseOfTheSurface ToolPath.OffsetIsTheCenterOfABall
   ToolPath.SpiralsCoverAsSeparatePassesDo)
 
 sanitizers() {
