@@ -23,7 +23,6 @@ class BallPlacer {
   /// @param part  the surface; must outlive the placer
   BallPlacer(const MeshTree& part, double radius) : part_(part), radius_(radius) {}
 
-  double radius() const { return radius_; }
   /// A center near the one in a direction; none: no place was found where the ball fits, and that the surface does not separate from
   /// the contact.
   /// @param direction  unit vector that points away from all faces at the contact

@@ -210,7 +210,8 @@ exact::PolyhedralSurface polyhedral(const FaceMesh& mesh) {
 }
 
 MeshTree::MeshTree(const FaceMesh& mesh)
-    : begin_([&] {
+    : mesh_(mesh),
+      begin_([&] {
         std::vector<Offset> begin;
         for (std::size_t f = 0; f <= mesh.size(); ++f) begin.push_back(static_cast<Offset>(3 * f));
         return begin;

@@ -52,11 +52,13 @@ class MeshTree {
   /// @param mesh  must outlive the tree
   explicit MeshTree(const FaceMesh& mesh);
 
+  const FaceMesh& mesh() const { return mesh_; }
   Hit nearest(const Vec3& position) const;
   /// The position of the nearest point, faster.
   Vec3 nearest_position(const Vec3& position) const { return tree_.nearest_position(position); }
 
  private:
+  const FaceMesh& mesh_;
   std::vector<Offset> begin_;
   detail::FaceTree tree_;
 };

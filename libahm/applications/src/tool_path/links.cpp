@@ -13,14 +13,13 @@ Vec3 any_perpendicular(const Vec3& axis) {
   return normalized(any - dot(any, axis) * axis);
 }
 
-Linker::Linker(const FaceMesh& whole, const MeshTree& part, const PathDomain& domain, const ToolPlacer& placer,
-               double clearance)
+Linker::Linker(const MeshTree& part, const PathDomain& domain, const ToolPlacer& placer, double clearance)
     : part_(part),
       domain_(domain),
       placer_(placer),
       clearance_(clearance),
       extent_(bounding_box(domain.mesh.points).diagonal()) {
-  const BoundingBox box = bounding_box(whole.points);
+  const BoundingBox box = bounding_box(part.mesh().points);
   center_ = box.center();
   outside_ = 1.05 * (box.diagonal() / 2 + clearance + placer.offset());
 }

@@ -17,10 +17,9 @@ Vec3 any_perpendicular(const Vec3& axis);
 /// Finds links.
 class Linker {
  public:
-  /// @param whole, part  the surface that links must not cut. @param domain  of the passes
-  /// @param clearance    height of lifted links
-  Linker(const FaceMesh& whole, const MeshTree& part, const PathDomain& domain, const ToolPlacer& placer,
-         double clearance);
+  /// @param part       the surface that links must not cut. @param domain  of the passes
+  /// @param clearance  height of lifted links
+  Linker(const MeshTree& part, const PathDomain& domain, const ToolPlacer& placer, double clearance);
 
   Vec3 lifted(const Spot& spot) const { return spot.position + clearance_ * spot.axis; }
   /// Whether the tool can rise from the surface to a share of the clearance.

@@ -116,7 +116,7 @@ void add_poses(const FaceMesh& whole, const PathDomain& domain, std::vector<Pass
   const ToolPlacer placer(tree, domain.mesh,
                           {step, tolerance, or_else(options.tool_radius, 0.5), options.offset / spacing});
   const double clearance = or_else(options.clearance, 1), max_link = or_else(options.max_link, 3);
-  const Linker linker(whole, tree, domain, placer, clearance);
+  const Linker linker(tree, domain, placer, clearance);
   path.chord_error = spacing * tolerance;
 
   constexpr double max_poses = 1 << 24;

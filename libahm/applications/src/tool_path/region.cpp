@@ -42,9 +42,10 @@ void keep_near(const Surface& surface, const ToolPathRegion::Disc& disc, double 
                std::vector<bool>& kept) {
   const Vec3 center = center_of(surface, disc, spacing);
   for (std::size_t f = 0; f < mesh.size(); ++f) {
-    std::vector<Vec3> corners;
-    for (const Index p : mesh.faces[f]) corners.push_back(mesh.points[to_size(p)]);
-    kept[f] = bounding_box(corners).distance_to(center) <= disc.radius / spacing;
+    const auto corner = [&](std::size_t c) { return mesh.points[to_size(mesh.faces[f][c])]; };
+    BoundingBox box{corner(0), corner(0)};
+    box.include(corner(1)), box.include(corner(2));
+    kept[f] = box.distance_to(center) <= disc.radius / spacing;
   }
 }
 
