@@ -239,7 +239,7 @@ TEST_F(MpiFaults, FilesThatCannotBeWrittenEndAllRanks) {
 /// One rank waits forever for a tile, and the others wait for this rank. Then one of the others is killed.
 TEST_F(MpiFaults, AKilledRankEndsAllRanks) {
   const BlockedFile tile(cloud.tile("graph", 8));
-  Background run(mpi_command(3, words()), log);
+  Background run = start_mpi(3, words(), log);
   run.wait_for([&] { return run.log().find("solve") != std::string::npos; });
   const std::vector<pid_t> children = run.children();
   ASSERT_EQ(children.size(), 3u);
@@ -272,7 +272,7 @@ TEST_F(MpiTest, ResumesAfterAKilledRank) {
   mpi_output(3, words(whole), log);
   {
     const BlockedFile tile(cloud.far_tile());
-    Background run(mpi_command(3, words(map)), log);
+    Background run = start_mpi(3, words(map), log);
     run.wait_for([&] { return std::filesystem::exists(map / "march.json"); });
     ::kill(run.children().at(1), SIGKILL);
     EXPECT_GT(run.wait(std::chrono::seconds(60)), 0) << run.log();

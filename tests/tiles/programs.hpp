@@ -97,22 +97,23 @@ class Background {
   bool has_ended_ = false;
 };
 
-/// Command line of ahm-mpi with this number of ranks.
-inline std::vector<std::string> mpi_command(int ranks, const std::vector<std::string>& arguments) {
+/// Starts ahm-mpi with this number of ranks. The folder of `log` gets the files of MPI too: runs at the same time that
+/// share a folder can remove each other's.
+inline Background start_mpi(int ranks, const std::vector<std::string>& arguments, const path& log) {
   // Allows root, more ranks than cores that share the cores, and shared memory as in any container. MPI itself leaks.
   const char* script =
       "export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1 "
       "OMPI_MCA_mpi_yield_when_idle=1 OMPI_MCA_hwloc_base_binding_policy=none OMPI_MCA_btl=self,vader "
-      "OMPI_MCA_btl_vader_single_copy_mechanism=none ASAN_OPTIONS=detect_leaks=0; exec \"$@\"";
-  std::vector<std::string> words{"/bin/sh",      "-c", script, "sh", AHM_MPIRUN, "-n", std::to_string(ranks),
-                                 AHM_MPI_PROGRAM};
+      "OMPI_MCA_btl_vader_single_copy_mechanism=none ASAN_OPTIONS=detect_leaks=0 TMPDIR=\"$0\"; exec \"$@\"";
+  std::vector<std::string> words{
+      "/bin/sh", "-c", script, log.parent_path().string(), AHM_MPIRUN, "-n", std::to_string(ranks), AHM_MPI_PROGRAM};
   words.insert(words.end(), arguments.begin(), arguments.end());
-  return words;
+  return {std::move(words), log};
 }
 
 /// Runs ahm-mpi, which must exit with `status`. @return its output
 inline std::string mpi_output(int ranks, const std::vector<std::string>& arguments, const path& log, int status = 0) {
-  Background run(mpi_command(ranks, arguments), log);
+  Background run = start_mpi(ranks, arguments, log);
   EXPECT_EQ(run.wait(), status) << run.log();
   return run.log();
 }
