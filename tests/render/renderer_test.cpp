@@ -335,6 +335,32 @@ TEST(Renderer, ShowsTheSourceOnEverySideOfAThinStem) {
   }
 }
 
+/// Six points, long along the view. The picture has margins of 8 %, as wide on opposite sides.
+TEST(Renderer, FillsThePictureFromEveryDirection) {
+  const std::vector<Vec3> points{{0, 0, 0}, {4, 0.2, 0}, {4, 1, 0.5}, {0.5, 1.5, 0}, {2, 0, 1}, {-1, 0, 2}};
+  const std::vector<Offset> begin{0, 3, 6, 9, 12};
+  const std::vector<Index> vertices{0, 1, 2, 0, 2, 3, 0, 4, 1, 0, 5, 4};
+  Scene scene;
+  scene.points = points, scene.face_begin = begin, scene.face_vertices = vertices;
+  PictureOptions options = from_above();
+  options.pattern = Pattern::none;
+  for (const Vec3& direction :
+       std::vector<Vec3>{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0.2, 0.1}, {3, -1, 2}}) {
+    options.view_direction = direction;
+    const Pixels pixels(scene, options);
+    int left = 400, right = 0, top = 300, bottom = 0;
+    for (int y = 0; y < 300; ++y)
+      for (int x = 0; x < 400; ++x)
+        if (is_drawn(pixels(x, y))) {
+          left = std::min(left, x), right = std::max(right, x);
+          top = std::min(top, y), bottom = std::max(bottom, y);
+        }
+    EXPECT_NEAR(left + right, 399, 4) << direction[0] << " " << direction[1] << " " << direction[2];
+    EXPECT_NEAR(top + bottom, 299, 4) << direction[0] << " " << direction[1] << " " << direction[2];
+    EXPECT_NEAR(std::max((right - left + 1) / 400.0, (bottom - top + 1) / 300.0), 1 / 1.08, 0.01);
+  }
+}
+
 /// A square in front of the camera, with one corner far behind it.
 TEST(Renderer, CutsTrianglesBehindTheCamera) {
   Patch patch(2, true);

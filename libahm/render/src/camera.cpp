@@ -2,6 +2,10 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
 
 #include "ahm/error.hpp"
 #include "ahm/util/quantile.hpp"
@@ -30,17 +34,23 @@ Range robust_range(std::vector<double> values) {
           high > trimmed_high + slack ? trimmed_high + slack : high};
 }
 
-/// Robust box of the points along the three columns of `axes`.
-Eigen::AlignedBox3d robust_box(const Scene& scene, const std::vector<Index>& points, const Eigen::Matrix3d& axes) {
+/// Box of the points without outliers.
+Eigen::AlignedBox3d robust_box(const std::vector<Vector3d>& points) {
   Vector3d low, high;
   std::vector<double> values(points.size());
   for (int k = 0; k < 3; ++k) {
-    for (std::size_t i = 0; i < points.size(); ++i) values[i] = as_vector(scene.points[points[i]]).dot(axes.col(k));
+    std::ranges::transform(points, values.begin(), [k](const Vector3d& p) { return p[k]; });
     const Range range = robust_range(values);
     low[k] = range.low;
     high[k] = range.high;
   }
   return {low, high};
+}
+
+std::vector<Vector3d> positions(const Scene& scene, const std::vector<Index>& points) {
+  std::vector<Vector3d> result;
+  for (const Index i : points) result.push_back(as_vector(scene.points[i]));
+  return result;
 }
 
 /// About `framing_sample` of the points.
@@ -59,7 +69,7 @@ std::vector<Index> framed_points(const Scene& scene, const std::vector<Index>& s
   std::copy_if(shown.begin(), shown.end(), std::back_inserter(mapped),
                [&](Index i) { return has_coordinate(scene, i); });
   const auto extent = [&](const std::vector<Index>& points) {
-    return robust_box(scene, sampled(points), Eigen::Matrix3d::Identity()).diagonal().stableNorm();
+    return robust_box(positions(scene, sampled(points))).diagonal().stableNorm();
   };
   const bool is_partial = !mapped.empty() && mapped.size() < shown.size();
   is_local = is_partial && (2 * mapped.size() < shown.size() || 2 * extent(mapped) < extent(shown));
@@ -84,27 +94,42 @@ void orient(Camera& camera, const Vector3d& direction, const Vector3d& up) {
   camera.up = camera.back.cross(camera.right);
 }
 
-/// Moves target and distance so that the points inside `box` (in camera axes, scene units) fill the picture.
+/// The value c at which the slopes (x - c) / (distance - z) of the points (x, z) extend as far to both sides: they are centered in the
+/// picture.
+double picture_center(const std::vector<Eigen::Vector2d>& points, double distance) {
+  double low = 0, high = 0;
+  for (const auto& p : points) low = std::min(low, p.x()), high = std::max(high, p.x());
+  while (true) {
+    const double middle = (low + high) / 2;
+    if (high - low < 1e-6) return middle;
+    double least = 0, greatest = 0;
+    for (const auto& p : points) {
+      const double slope = (p.x() - middle) / (distance - p.y());
+      least = std::min(least, slope), greatest = std::max(greatest, slope);
+    }
+    (greatest + least > 0 ? low : high) = middle;
+  }
+}
+
+/// Moves target and distance so that the points inside `box` (in camera axes, scene units) fill the picture: from the least distance at
+/// which |x - c| margin / tan <= distance - z for all points, for a center c of each axis.
 void fit(Camera& camera, const std::vector<Vector3d>& points, const Eigen::AlignedBox3d& box, double aspect,
          double margin) {
-  const double tan_y = std::tan(Camera::field_of_view / 2), tan_x = tan_y * aspect;
+  const double tangent = std::tan(Camera::field_of_view / 2);
   Vector3d center = box.center();
-  double distance = 0;
-  for (int round = 0; round < 4; ++round) {  // iterate, because recentering changes the perspective
-    distance = 1e-3;
+  std::array<std::vector<Eigen::Vector2d>, 2> planes;
+  camera.distance = 1e-3;
+  for (int k = 0; k < 2; ++k) {
+    const double slope = margin / (k == 0 ? tangent * aspect : tangent);
+    double right = -std::numeric_limits<double>::infinity(), left = right;
     for (const Vector3d& p : points) {
       const Vector3d q = p - center;
-      distance =
-          std::max({distance, q.z() + std::abs(q.x()) / tan_x * margin, q.z() + std::abs(q.y()) / tan_y * margin});
+      planes[k].emplace_back(q[k], q.z());
+      right = std::max(right, q.z() + slope * q[k]), left = std::max(left, q.z() - slope * q[k]);
     }
-    Eigen::AlignedBox2d seen;
-    for (const Vector3d& p : points) {
-      const Vector3d q = p - center;
-      seen.extend(Eigen::Vector2d(q.head<2>() / (distance - q.z())));
-    }
-    center.head<2>() += distance * seen.center();
+    camera.distance = std::max(camera.distance, (left + right) / 2);
   }
-  camera.distance = distance;
+  for (int k = 0; k < 2; ++k) center[k] += picture_center(planes[k], camera.distance);
   camera.target = center.x() * camera.right + center.y() * camera.up + center.z() * camera.back;
 }
 
@@ -150,7 +175,7 @@ std::vector<Index> shown_points(const Scene& scene) {
 Camera choose_camera(const Scene& scene, const std::vector<Index>& shown, const PictureOptions& options) {
   bool is_local = false;
   const std::vector<Index> framed = framed_points(scene, shown, is_local);
-  const Eigen::AlignedBox3d box = robust_box(scene, framed, Eigen::Matrix3d::Identity());
+  const Eigen::AlignedBox3d box = robust_box(positions(scene, framed));
 
   Camera camera;
   camera.center = box.center();
@@ -165,14 +190,10 @@ Camera choose_camera(const Scene& scene, const std::vector<Index>& shown, const 
 
   Eigen::Matrix3d axes;
   axes << camera.right, camera.up, camera.back;
-  Eigen::AlignedBox3d view_box = robust_box(scene, framed, axes);
-  const Vector3d shift = axes.transpose() * camera.center;
-  view_box = {(view_box.min() - shift) / camera.scale, (view_box.max() - shift) / camera.scale};
   std::vector<Vector3d> points;
-  for (const Index i : framed) {
-    const Vector3d p = axes.transpose() * camera.to_scene(scene.points[i]);
-    if (view_box.contains(p)) points.push_back(p);
-  }
+  for (const Index i : framed) points.push_back(axes.transpose() * camera.to_scene(scene.points[i]));
+  const Eigen::AlignedBox3d view_box = robust_box(points);
+  std::erase_if(points, [&](const Vector3d& p) { return !view_box.contains(p); });
   if (points.empty()) points.push_back(view_box.center());
   fit(camera, points, view_box, static_cast<double>(options.width) / options.height, is_local ? 1.35 : 1.08);
 
