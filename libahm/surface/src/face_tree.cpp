@@ -35,8 +35,17 @@ Vec3 combined(const std::array<Vec3, 3>& t, const std::array<double, 3>& weights
   return result;
 }
 
+/// Whether the plane of a triangle is farther from p than a distance. With cross products as exact as their factors are long.
+bool is_beyond(const std::array<Vec3, 3>& t, const Vec3& p, double distance) {
+  constexpr double margin = 1e-6, rounding_of_normals = 1e-24;
+  const Vec3 u = t[1] - t[0], v = t[2] - t[0], w = p - t[0], normal = cross(u, v);
+  const double height = dot(w, normal);
+  return height * height > (1 + margin) * distance * distance * dot(normal, normal) +
+                               rounding_of_normals * dot(u, u) * dot(v, v) * dot(w, w);
+}
+
 /// Barycentric coordinates of the point of a triangle nearest to p: its projection, or the nearest point on an edge.
-std::array<double, 3> nearest_in(const std::array<Vec3, 3>& t, const Vec3& p) {
+std::array<double, 3> nearest_weights(const std::array<Vec3, 3>& t, const Vec3& p) {
   const Vec3 u = t[1] - t[0], v = t[2] - t[0], w = p - t[0];
   const double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), area = uu * vv - uv * uv;
   const double second = (vv * dot(w, u) - uv * dot(w, v)) / area, third = (uu * dot(w, v) - uv * dot(w, u)) / area;
@@ -54,6 +63,18 @@ std::array<double, 3> nearest_in(const std::array<Vec3, 3>& t, const Vec3& p) {
     best = weights;
   }
   return best;
+}
+
+/// The point of a triangle that is nearest to a position.
+struct Candidate {
+  std::array<double, 3> weights;  ///< barycentric coordinates
+  Vec3 position;
+  double distance;
+};
+Candidate nearest_in(const std::array<Vec3, 3>& t, const Vec3& p) {
+  const std::array<double, 3> weights = nearest_weights(t, p);
+  const Vec3 position = combined(t, weights);
+  return {weights, position, norm(position - p)};
 }
 
 double squared_distance(const Vec3& p, const Vec3& low, const Vec3& high) {
@@ -142,28 +163,36 @@ FaceTree::Search FaceTree::search_from(const Vec3& position) const {
   return {scale, scale * position, scale * largest(position)};
 }
 
-Vec3 FaceTree::nearest_position(const Vec3& position) const {
+std::optional<Vec3> FaceTree::nearest_position(const Vec3& position, double within) const {
   Search search = search_from(position);
-  Vec3 best{};
+  search.least = search.scale * within;
+  std::optional<Vec3> best;
   visit(0, search, [&](const Piece& piece) {
-    const Candidate here = nearest_in_piece(piece, search.from, search.scale);
+    const std::array<Vec3, 3> triangle = corners(piece, search.scale);
+    if (is_beyond(triangle, search.from, search.least)) return;
+    const Candidate here = nearest_in(triangle, search.from);
     if (here.distance < search.least) search.least = here.distance, best = here.position;
   });
-  return (1 / search.scale) * best;
+  if (best) *best = (1 / search.scale) * *best;
+  return best;
 }
 
 FaceTree::Hit FaceTree::nearest(const Vec3& position) const {
   Search search = search_from(position);
   const double scale = search.scale, unit = 1 / scale;
   visit(0, search, [&](const Piece& piece) {
-    search.least = std::min(search.least, nearest_in_piece(piece, search.from, scale).distance);
+    const std::array<Vec3, 3> triangle = corners(piece, scale);
+    if (!is_beyond(triangle, search.from, search.least))
+      search.least = std::min(search.least, nearest_in(triangle, search.from).distance);
   });
   Hit best;
   bool found = false;
   visit(0, search, [&](const Piece& piece) {
     if (found && piece.face > best.point.face) return;
-    const Candidate here = nearest_in_piece(piece, search.from, scale);
-    if (here.distance > search.least + rounding * std::max(search.size, here.size)) return;
+    const std::array<Vec3, 3> triangle = corners(piece, scale);
+    const Candidate here = nearest_in(triangle, search.from);
+    const double size = std::max({search.size, largest(triangle[0]), largest(triangle[1]), largest(triangle[2])});
+    if (here.distance > search.least + rounding * size) return;
     if (found && piece.face == best.point.face && !(unit * here.distance < best.distance)) return;
     std::vector<double> of_corners(faces_[piece.face].size(), 0.0);
     of_corners[0] = here.weights[0];
@@ -175,18 +204,9 @@ FaceTree::Hit FaceTree::nearest(const Vec3& position) const {
   return best;
 }
 
-/// The point of a triangle that is nearest to `from`; all lengths times `scale`.
-FaceTree::Candidate FaceTree::nearest_in_piece(const Piece& piece, const Vec3& from, double scale) const {
-  std::array<Vec3, 3> t;
-  Candidate here{};
-  for (std::size_t k = 0; k < 3; ++k) {
-    t[k] = scale * corner(piece, static_cast<int>(k));
-    here.size = std::max(here.size, largest(t[k]));
-  }
-  here.weights = nearest_in(t, from);
-  here.position = combined(t, here.weights);
-  here.distance = norm(here.position - from);
-  return here;
+/// Times `scale`.
+std::array<Vec3, 3> FaceTree::corners(const Piece& piece, double scale) const {
+  return {scale * corner(piece, 0), scale * corner(piece, 1), scale * corner(piece, 2)};
 }
 
 }  // namespace ahm::detail

@@ -22,14 +22,15 @@ Vec3 turned_away(std::span<const Vec3> normals, Vec3 axis) {
 
 std::optional<Vec3> BallPlacer::center(const Vec3& contact, const Vec3& direction) const {
   const Vec3 upright = contact + radius_ * direction;
-  if (fits(upright, part_.nearest_position(upright), radius_)) return upright;
+  if (!cut(upright, radius_)) return upright;
   constexpr double height = 1e-4;
   const std::optional<Vec3> result = grown(contact, direction);
   return result && are_connected(*result, contact + height * radius_ * direction) ? result : std::nullopt;
 }
 
-bool BallPlacer::fits(const Vec3& center, const Vec3& nearest, double radius) const {
-  return distance(center, nearest) >= (1 - tolerance) * radius;
+/// The point of the surface that is deepest in a ball; none: the ball fits.
+std::optional<Vec3> BallPlacer::cut(const Vec3& center, double radius) const {
+  return part_.nearest_position(center, (1 - tolerance) * radius);
 }
 
 /// A small ball grows in a direction, and moves away from what it would intersect. It can jump through the surface. The same sizes
@@ -45,11 +46,11 @@ std::optional<Vec3> BallPlacer::grown(const Vec3& contact, const Vec3& direction
     center = center + (next - radius) * direction;
     radius = next;
     for (int move = 0;; ++move) {
-      const Vec3 nearest = part_.nearest_position(center);
-      if (fits(center, nearest, radius)) break;
-      const double away = distance(center, nearest);
+      const std::optional<Vec3> nearest = cut(center, radius);
+      if (!nearest) break;
+      const double away = distance(center, *nearest);
       if (move == max_moves || !(away > 0)) return {};
-      center = nearest + (radius / away) * (center - nearest);
+      center = *nearest + (radius / away) * (center - *nearest);
     }
   }
   return center;
@@ -64,10 +65,11 @@ bool BallPlacer::are_connected(const Vec3& from, const Vec3& to) const {
   double share = 0;
   for (int step = 0; step < max_steps; ++step) {
     const Vec3 at = (1 - share) * from + share * to;
-    const double away = distance(at, part_.nearest_position(at));
+    const std::optional<Vec3> nearest = part_.nearest_position(at, (1 - share) * length);
+    if (!nearest) return true;
+    const double away = distance(at, *nearest);
     if (away < least_step * length) return false;
     share += away / length;
-    if (share >= 1) return true;
   }
   return false;
 }

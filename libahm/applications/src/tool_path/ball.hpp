@@ -29,7 +29,7 @@ class BallPlacer {
   std::optional<Vec3> center(const Vec3& contact, const Vec3& direction) const;
 
  private:
-  bool fits(const Vec3& center, const Vec3& nearest, double radius) const;
+  std::optional<Vec3> cut(const Vec3& center, double radius) const;
   std::optional<Vec3> grown(const Vec3& contact, const Vec3& direction) const;
   bool are_connected(const Vec3& from, const Vec3& to) const;
 

@@ -2,6 +2,8 @@
 /// The domain of tool paths: triangles smaller than the spacing, with exact distances from curves.
 #pragma once
 
+#include <limits>
+#include <optional>
 #include <vector>
 
 #include "ahm/progress.hpp"
@@ -54,8 +56,11 @@ class MeshTree {
 
   const FaceMesh& mesh() const { return mesh_; }
   Hit nearest(const Vec3& position) const;
-  /// The position of the nearest point, faster.
-  Vec3 nearest_position(const Vec3& position) const { return tree_.nearest_position(position); }
+  /// The position of the nearest point, faster; none: it is not nearer than `within`.
+  std::optional<Vec3> nearest_position(const Vec3& position, double within) const {
+    return tree_.nearest_position(position, within);
+  }
+  double distance(const Vec3& position) const { return ahm::distance(position, *tree_.nearest_position(position)); }
 
  private:
   const FaceMesh& mesh_;

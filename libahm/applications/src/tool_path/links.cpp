@@ -129,10 +129,6 @@ std::optional<std::vector<Vec3>> Linker::path_to_sphere(const Spot& spot) const 
   return {};
 }
 
-double Linker::distance_from_surface(const Vec3& position) const {
-  return distance(position, part_.nearest_position(position));
-}
-
 /// Whether a segment keeps its distance from the surface, a quarter of the clearance. From every point, the excess of the distance
 /// is a step that cannot reach the surface.
 /// @param share_from, share_to  shares of the clearance at the ends; the height that is kept is proportional to them
@@ -141,7 +137,7 @@ bool Linker::is_free(const Vec3& from, const Vec3& to, double share_from, double
   const double slope = length > 0 ? std::abs(high - low) / length : 0;
   for (double walked = 0;;) {
     const double share = length > 0 ? std::min(1.0, walked / length) : 1;
-    const double excess = distance_from_surface((1 - share) * from + share * to) - ((1 - share) * low + share * high);
+    const double excess = part_.distance((1 - share) * from + share * to) - ((1 - share) * low + share * high);
     if (excess < 0) return false;
     if (share >= 1) return true;
     walked += std::max(excess / (1 + slope), 0.025 * clearance_);

@@ -37,7 +37,6 @@ class Linker {
  private:
   double least_height(double share) const;
   std::optional<std::vector<Vec3>> path_to_sphere(const Spot& spot) const;
-  double distance_from_surface(const Vec3& position) const;
   bool is_free(const Vec3& from, const Vec3& to, double share_from = 1, double share_to = 1) const;
   bool is_free(const std::vector<Vec3>& points) const;
 

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <array>
+#include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -27,8 +29,9 @@ class FaceTree {
 
   /// The nearest point of the faces. @param position  finite
   Hit nearest(const Vec3& position) const;
-  /// The position of the nearest point, faster.
-  Vec3 nearest_position(const Vec3& position) const;
+  /// The position of the nearest point, faster; none: it is not nearer than `within`.
+  std::optional<Vec3> nearest_position(const Vec3& position,
+                                       double within = std::numeric_limits<double>::infinity()) const;
 
  private:
   struct Piece {
@@ -40,13 +43,6 @@ class FaceTree {
     std::size_t second;      ///< number of the second child, 0 in a leaf; the first child follows this box
   };
 
-  /// The nearest point of one triangle. All lengths times `scale` of the search.
-  struct Candidate {
-    std::array<double, 3> weights;  ///< barycentric coordinates in the triangle
-    Vec3 position;
-    double distance, size;  ///< size: the largest coordinate of the triangle
-  };
-
   struct Search;
 
   Search search_from(const Vec3& position) const;
@@ -54,7 +50,7 @@ class FaceTree {
   void build(std::size_t begin, std::size_t end);
   template <class Visitor>
   void visit(std::size_t number, const Search& search, const Visitor& visitor) const;
-  Candidate nearest_in_piece(const Piece& piece, const Vec3& from, double scale) const;
+  std::array<Vec3, 3> corners(const Piece& piece, double scale) const;
 
   std::span<const Vec3> positions_;
   FaceList faces_;
