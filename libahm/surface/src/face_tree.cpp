@@ -13,7 +13,7 @@
 namespace ahm::detail {
 namespace {
 
-constexpr std::size_t leaf = 8;  ///< maximum number of triangles in a leaf
+constexpr std::size_t leaf = 4;  ///< maximum number of triangles in a leaf
 constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Relative tolerance. A point within this fraction of a side from an edge or a corner lies on it. Of faces whose distances
 /// differ by less than this fraction of their coordinates, the first is the nearest. So a curve that crosses an edge is the
@@ -115,7 +115,12 @@ void FaceTree::build(std::size_t begin, std::size_t end) {
   const std::size_t number = boxes_.size();
   boxes_.push_back(box);
   if (end - begin <= leaf) return;
-  const Vec3 sides = box.high - box.low;
+  Vec3 low{infinity, infinity, infinity}, high = -low;
+  for (std::size_t t = begin; t < end; ++t) {
+    const Vec3 m = (1.0 / 3) * corner(pieces_[t], 0) + (1.0 / 3) * corner(pieces_[t], 1) + (1.0 / 3) * corner(pieces_[t], 2);
+    for (std::size_t a = 0; a < 3; ++a) low[a] = std::min(low[a], m[a]), high[a] = std::max(high[a], m[a]);
+  }
+  const Vec3 sides = high - low;
   const auto axis = static_cast<std::size_t>(std::max_element(sides.begin(), sides.end()) - sides.begin());
   const auto middle_of = [&](const Piece& t) {
     return corner(t, 0)[axis] / 3 + corner(t, 1)[axis] / 3 + corner(t, 2)[axis] / 3;
@@ -129,18 +134,18 @@ void FaceTree::build(std::size_t begin, std::size_t end) {
   build(half, end);
 }
 
-/// State of a search; all lengths times `scale`.
+/// State of a search; all lengths times `scale`, so that coordinates are less than 2.
 struct FaceTree::Search {
   double scale;
   Vec3 from;
   double size;  ///< largest coordinate of `from`
   double least = infinity;
 
-  double to(const Box& box) const { return std::sqrt(squared_distance(from, scale * box.low, scale * box.high)); }
-  /// Whether a box may contain a point as near as the nearest so far, up to rounding of the coordinates.
-  bool may_be_in(const Box& box) const {
-    return to(box) <= least + rounding * std::max({size, scale * largest(box.low), scale * largest(box.high)});
+  double squared_distance(const Box& box) const {
+    return detail::squared_distance(from, scale * box.low, scale * box.high);
   }
+  /// The square of the distance within which a box may contain a point as near as the nearest so far, up to rounding.
+  double squared_reach() const { return (least + 2 * rounding) * (least + 2 * rounding); }
 };
 
 /// Visits the triangles in a box that may be the nearest.
@@ -152,9 +157,10 @@ void FaceTree::visit(std::size_t number, const Search& search, const Visitor& vi
     return;
   }
   std::size_t near = number + 1, far = box.second;
-  if (search.to(boxes_[far]) < search.to(boxes_[near])) std::swap(near, far);
-  for (const std::size_t half : {near, far})
-    if (search.may_be_in(boxes_[half])) visit(half, search, visitor);
+  double to_near = search.squared_distance(boxes_[near]), to_far = search.squared_distance(boxes_[far]);
+  if (to_far < to_near) std::swap(near, far), std::swap(to_near, to_far);
+  if (to_near <= search.squared_reach()) visit(near, search, visitor);
+  if (to_far <= search.squared_reach()) visit(far, search, visitor);
 }
 
 FaceTree::Search FaceTree::search_from(const Vec3& position) const {
