@@ -24,9 +24,8 @@ struct Triangles {
     std::normal_distribution<double> normal;
     const auto vector = [&](double length) { return length * Vec3{normal(random), normal(random), normal(random)}; };
     for (int k = 0; k < n; ++k) {
-      const Vec3 a = vector(scale), b = a + vector(0.2 * scale);
-      points.insert(points.end(),
-                    {a, b, k % 3 == 0 ? 0.3 * a + 0.7 * b + vector(1e-15 * scale) : a + vector(0.2 * scale)});
+      const Vec3 a = vector(scale), b = a + vector(scale);
+      points.insert(points.end(), {a, b, k % 3 == 0 ? 0.3 * a + 0.7 * b + vector(1e-15 * scale) : a + vector(scale)});
       for (int c = 0; c < 3; ++c) corners.push_back(3 * k + c);
       begin.push_back(3 * (k + 1));
     }

@@ -115,20 +115,20 @@ void FaceTree::build(std::size_t begin, std::size_t end) {
   const std::size_t number = boxes_.size();
   boxes_.push_back(box);
   if (end - begin <= leaf) return;
-  Vec3 low{infinity, infinity, infinity}, high = -low;
+  const auto middle_of = [&](const Piece& t) {
+    return (1.0 / 3) * corner(t, 0) + (1.0 / 3) * corner(t, 1) + (1.0 / 3) * corner(t, 2);
+  };
+  Vec3 low = middle_of(pieces_[begin]), high = low;
   for (std::size_t t = begin; t < end; ++t) {
-    const Vec3 m = (1.0 / 3) * corner(pieces_[t], 0) + (1.0 / 3) * corner(pieces_[t], 1) + (1.0 / 3) * corner(pieces_[t], 2);
-    for (std::size_t a = 0; a < 3; ++a) low[a] = std::min(low[a], m[a]), high[a] = std::max(high[a], m[a]);
+    const Vec3 middle = middle_of(pieces_[t]);
+    for (std::size_t a = 0; a < 3; ++a) low[a] = std::min(low[a], middle[a]), high[a] = std::max(high[a], middle[a]);
   }
   const Vec3 sides = high - low;
   const auto axis = static_cast<std::size_t>(std::max_element(sides.begin(), sides.end()) - sides.begin());
-  const auto middle_of = [&](const Piece& t) {
-    return corner(t, 0)[axis] / 3 + corner(t, 1)[axis] / 3 + corner(t, 2)[axis] / 3;
-  };
   const std::size_t half = begin + (end - begin) / 2;
   const auto at = [&](std::size_t t) { return pieces_.begin() + static_cast<std::ptrdiff_t>(t); };
   std::nth_element(at(begin), at(half), at(end),
-                   [&](const Piece& a, const Piece& b) { return middle_of(a) < middle_of(b); });
+                   [&](const Piece& a, const Piece& b) { return middle_of(a)[axis] < middle_of(b)[axis]; });
   build(begin, half);
   boxes_[number].second = boxes_.size();
   build(half, end);
