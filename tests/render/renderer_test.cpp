@@ -361,6 +361,19 @@ TEST(Renderer, FillsThePictureFromEveryDirection) {
   }
 }
 
+/// A steep pyramid without a base: the tip is not cut off.
+TEST(Renderer, ShowsATipThatPointsAtTheViewer) {
+  const std::vector<Vec3> points{{0, 0, 8}, {-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+  const std::vector<Offset> begin{0, 3, 6, 9, 12};
+  const std::vector<Index> vertices{0, 1, 2, 0, 2, 3, 0, 3, 4, 0, 4, 1};
+  Scene scene;
+  scene.points = points, scene.face_begin = begin, scene.face_vertices = vertices;
+  PictureOptions options = from_above();
+  options.pattern = Pattern::none;
+  const Pixels pixels(scene, options);
+  for (int x = 196; x < 204; ++x) EXPECT_TRUE(is_drawn(pixels(x, 150))) << x;
+}
+
 /// A square in front of the camera, with one corner far behind it.
 TEST(Renderer, CutsTrianglesBehindTheCamera) {
   Patch patch(2, true);

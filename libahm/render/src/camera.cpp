@@ -112,13 +112,15 @@ double picture_center(const std::vector<Eigen::Vector2d>& points, double distanc
 }
 
 /// Moves target and distance so that the points inside `box` (in camera axes, scene units) fill the picture: from the least distance at
-/// which |x - c| margin / tan <= distance - z for all points, for a center c of each axis.
+/// which |x - c| margin / tan <= distance - z for all points, for a center c of each axis. No point comes nearer to the eye than a tenth of
+/// the unit.
 void fit(Camera& camera, const std::vector<Vector3d>& points, const Eigen::AlignedBox3d& box, double aspect,
          double margin) {
   const double tangent = std::tan(Camera::field_of_view / 2);
   Vector3d center = box.center();
   std::array<std::vector<Eigen::Vector2d>, 2> planes;
-  camera.distance = 1e-3;
+  constexpr double nearest = 0.1;
+  camera.distance = 0;
   for (int k = 0; k < 2; ++k) {
     const double slope = margin / (k == 0 ? tangent * aspect : tangent);
     double right = -std::numeric_limits<double>::infinity(), left = right;
@@ -129,6 +131,7 @@ void fit(Camera& camera, const std::vector<Vector3d>& points, const Eigen::Align
     }
     camera.distance = std::max(camera.distance, (left + right) / 2);
   }
+  for (const auto& p : planes[0]) camera.distance = std::max(camera.distance, p.y() + nearest);
   for (int k = 0; k < 2; ++k) center[k] += picture_center(planes[k], camera.distance);
   camera.target = center.x() * camera.right + center.y() * camera.up + center.z() * camera.back;
 }
