@@ -71,6 +71,8 @@ export class Surface {
   private constructor();
   /** Number of rows of the input. */
   readonly rows: number;
+  /** What may be wrong with the input, or was changed. The ids are those of the C++ and Python libraries. */
+  readonly warnings: {id: string; text: string}[];
   free(): void;
 }
 

@@ -98,12 +98,14 @@ class Handle {
 function flat(values, width, Type, name) {
   if (values instanceof Type && values.length % width === 0) return values;
   const list = ArrayBuffer.isView(values) ? values : Array.from(values ?? []);
-  const nested = list.length > 0 && typeof list[0] === 'object';
+  const nested = typeof list[0] === 'object';
   if (nested) {
-    const bad = list.findIndex((entry) => entry.length !== width);
-    if (bad >= 0) throw new InvalidArgument(`${name}: entry ${bad} has ${list[bad].length} numbers instead of ${width}`);
+    const bad = list.findIndex((entry) => entry?.length !== width);
+    if (bad >= 0) throw new InvalidArgument(`${name}: entry ${bad} has ${list[bad]?.length ?? 'no'} numbers instead of ${width}`);
   }
   const numbers = nested ? list.flatMap((entry) => Array.from(entry)) : list;
+  const odd = Array.isArray(numbers) ? numbers.findIndex((x) => typeof x !== 'number') : -1;
+  if (odd >= 0) throw new InvalidArgument(`${name}: ${numbers[odd]} is not a number`);
   if (numbers.length % width !== 0)
     throw new InvalidArgument(`${name}: ${numbers.length} numbers are not a multiple of ${width}`);
   if (Type === Int32Array) checkIntegers(numbers, name);
@@ -151,6 +153,14 @@ export class Surface {
   }
   get rows() {
     return this.#handle.module.exports.ahm_rows(this.#handle.get());
+  }
+  get warnings() {
+    const {module} = this.#handle;
+    const lines = module.text(module.checked(module.exports.ahm_warnings(this.#handle.get()))).split('\n').slice(0, -1);
+    return lines.map((line) => {
+      const [id, text] = line.split('\t');
+      return {id, text};
+    });
   }
   free() {
     this.#handle.free();

@@ -19,6 +19,7 @@
 #include "ahm/surface/mesh_repair.hpp"
 #include "ahm/surface/surface_solver.hpp"
 #include "ahm/trimesh/triangle_mesh_surface.hpp"
+#include "output/warning_text.hpp"
 
 // NOLINTBEGIN(readability-identifier-naming)
 #define AHM_EXPORT(name) extern "C" [[clang::export_name(#name)]]
@@ -182,6 +183,16 @@ SurfacePointer* ahm_point_cloud(const double* positions, std::uint32_t count, co
 
 AHM_EXPORT(ahm_rows) std::uint32_t ahm_rows(const SurfacePointer* surface) {
   return static_cast<std::uint32_t>((*surface)->rows().row_count());
+}
+/// Lines of an id and a text, with a tab between them. Valid until the next call.
+AHM_EXPORT(ahm_warnings) const char* ahm_warnings(const SurfacePointer* surface) {
+  static std::string lines;
+  return guarded([&] {
+    lines.clear();
+    for (const ahm::Warning& warning : (*surface)->warnings())
+      lines += std::string(warning.id) + '\t' + ahm::app::worded(warning) + '\n';
+    return lines.c_str();
+  });
 }
 AHM_EXPORT(ahm_release_surface) void ahm_release_surface(SurfacePointer* surface) { delete surface; }
 

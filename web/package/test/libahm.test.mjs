@@ -91,6 +91,15 @@ test('welded meshes have the maps of the mesh without repeated vertices', () => 
   assert.throws(() => ahm.triangleMesh(points, corners, {weld: -1}), libahm.InvalidArgument);
 });
 
+test('surfaces have warnings', () => {
+  const {positions, triangles} = square(5);
+  assert.deepEqual(ahm.triangleMesh(positions, triangles).warnings, []);
+  const moved = positions.map(([x, y, z]) => [x + 3, y, z]);
+  const twice = ahm.triangleMesh([...positions, ...moved], [...triangles, ...triangles.map((t) => t.map((v) => v + 25))]);
+  assert.deepEqual(twice.warnings.map(({id}) => id), ['components']);
+  assert.match(twice.warnings[0].text, /2 components/);
+});
+
 test('places, radius, distances and paths', () => {
   const {positions, triangles} = square(21);
   const solver = ahm.solver(ahm.triangleMesh(positions, triangles));
@@ -143,6 +152,8 @@ test('errors are of the class of the library, with its message', () => {
   refused(() => ahm.triangleMesh(positions, [[0, 1, 99]]), libahm.InvalidGeometry, /99/);
   refused(() => ahm.triangleMesh(positions, [[0, 1]]), libahm.InvalidArgument, /triangles/);
   refused(() => ahm.triangleMesh(positions, triangles, {weld: true}), libahm.InvalidArgument, /weld is true/);
+  refused(() => ahm.triangleMesh([null, ...positions.slice(1)], triangles), libahm.InvalidArgument, /positions: entry 0 has no numbers/);
+  refused(() => ahm.pointCloud([0, null, 2]), libahm.InvalidArgument, /positions: null is not a number/);
   refused(() => solver.distance([]), libahm.InvalidArgument, /sources/);
   refused(() => ahm.polygonMesh(positions, [0, 1, 2]), libahm.InvalidArgument, /faces: entry 0/);
   refused(() => ahm.pointCloud([[0, 0, 0], [1, 0, 0]]), libahm.InvalidGeometry, /point/);
