@@ -2,13 +2,13 @@
 /// The domain of tool paths: triangles smaller than the spacing, with exact distances from curves.
 #pragma once
 
-#include <limits>
 #include <optional>
 #include <vector>
 
 #include "ahm/progress.hpp"
 #include "ahm/surface/detail/face_tree.hpp"
 #include "ahm/surface/exact/exact_map.hpp"
+#include "ahm/util/vec.hpp"
 #include "face_mesh.hpp"
 
 namespace ahm {
