@@ -335,19 +335,28 @@ TEST(Renderer, ShowsTheSourceOnEverySideOfAThinStem) {
   }
 }
 
+struct FourTriangles {
+  std::vector<Vec3> points;
+  std::vector<Index> vertices;
+  std::vector<Offset> begin{0, 3, 6, 9, 12};
+
+  Scene scene() const {
+    Scene scene;
+    scene.points = points, scene.face_begin = begin, scene.face_vertices = vertices;
+    return scene;
+  }
+};
+
 /// Six points, long along the view. The picture has margins of 8 %, as wide on opposite sides.
 TEST(Renderer, FillsThePictureFromEveryDirection) {
-  const std::vector<Vec3> points{{0, 0, 0}, {4, 0.2, 0}, {4, 1, 0.5}, {0.5, 1.5, 0}, {2, 0, 1}, {-1, 0, 2}};
-  const std::vector<Offset> begin{0, 3, 6, 9, 12};
-  const std::vector<Index> vertices{0, 1, 2, 0, 2, 3, 0, 4, 1, 0, 5, 4};
-  Scene scene;
-  scene.points = points, scene.face_begin = begin, scene.face_vertices = vertices;
+  const FourTriangles mesh{.points = {{0, 0, 0}, {4, 0.2, 0}, {4, 1, 0.5}, {0.5, 1.5, 0}, {2, 0, 1}, {-1, 0, 2}},
+                           .vertices = {0, 1, 2, 0, 2, 3, 0, 4, 1, 0, 5, 4}};
   PictureOptions options = from_above();
   options.pattern = Pattern::none;
   for (const Vec3& direction :
        std::vector<Vec3>{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0.2, 0.1}, {3, -1, 2}}) {
     options.view_direction = direction;
-    const Pixels pixels(scene, options);
+    const Pixels pixels(mesh.scene(), options);
     int left = 400, right = 0, top = 300, bottom = 0;
     for (int y = 0; y < 300; ++y)
       for (int x = 0; x < 400; ++x)
@@ -363,14 +372,11 @@ TEST(Renderer, FillsThePictureFromEveryDirection) {
 
 /// A steep pyramid without a base: the tip is not cut off.
 TEST(Renderer, ShowsATipThatPointsAtTheViewer) {
-  const std::vector<Vec3> points{{0, 0, 8}, {-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
-  const std::vector<Offset> begin{0, 3, 6, 9, 12};
-  const std::vector<Index> vertices{0, 1, 2, 0, 2, 3, 0, 3, 4, 0, 4, 1};
-  Scene scene;
-  scene.points = points, scene.face_begin = begin, scene.face_vertices = vertices;
+  const FourTriangles mesh{.points = {{0, 0, 8}, {-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}},
+                           .vertices = {0, 1, 2, 0, 2, 3, 0, 3, 4, 0, 4, 1}};
   PictureOptions options = from_above();
   options.pattern = Pattern::none;
-  const Pixels pixels(scene, options);
+  const Pixels pixels(mesh.scene(), options);
   for (int x = 196; x < 204; ++x) EXPECT_TRUE(is_drawn(pixels(x, 150))) << x;
 }
 

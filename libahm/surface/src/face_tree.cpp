@@ -35,7 +35,8 @@ Vec3 combined(const std::array<Vec3, 3>& t, const std::array<double, 3>& weights
   return result;
 }
 
-/// Whether the plane of a triangle is farther from p than a distance. With cross products as exact as their factors are long.
+/// Whether the plane of a triangle is certainly farther from p than a distance. The normal of a needle is inexact, so a needle is beyond
+/// only if its plane is farther by the error.
 bool is_beyond(const std::array<Vec3, 3>& t, const Vec3& p, double distance) {
   constexpr double margin = 1e-6, rounding_of_normals = 1e-24;
   const Vec3 u = t[1] - t[0], v = t[2] - t[0], w = p - t[0], normal = cross(u, v);
@@ -144,7 +145,7 @@ struct FaceTree::Search {
   double squared_distance(const Box& box) const {
     return detail::squared_distance(from, scale * box.low, scale * box.high);
   }
-  /// The square of the distance within which a box may contain a point as near as the nearest so far, up to rounding.
+  /// The square of the largest distance of a box that must be searched: that of the nearest point so far, and rounding.
   double squared_reach() const { return (least + 2 * rounding) * (least + 2 * rounding); }
 };
 
